@@ -1,0 +1,27 @@
+//! The one home of small numbers.
+
+/// The chord error the modeller allows, in millimetres: no point of a mesh is farther than this from
+/// the true surface. Built once, in `session`, and passed down by value. Exact kernels take none.
+#[derive(Clone, Copy, PartialEq, PartialOrd, Debug)]
+pub struct Tolerance(f64);
+
+impl Tolerance {
+    /// What holds when the model says nothing: 0.05 mm.
+    pub const DEFAULT: Tolerance = Tolerance(0.05);
+
+    /// A tolerance of `mm` millimetres; `None` unless finite and positive.
+    pub fn new(mm: f64) -> Option<Tolerance> {
+        (mm.is_finite() && mm > 0.0).then_some(Tolerance(mm))
+    }
+
+    /// The allowed chord error in millimetres.
+    pub const fn mm(self) -> f64 {
+        self.0
+    }
+}
+
+impl Default for Tolerance {
+    fn default() -> Tolerance {
+        Tolerance::DEFAULT
+    }
+}

@@ -1,0 +1,5 @@
+//! Exact polyhedra: boundary representation by planar polygons.
+
+pub mod polyhedron;
+
+pub use polyhedron::{Defect, Polyhedron};

@@ -1,0 +1,3 @@
+//! The kernels: siblings that do not know each other.
+
+pub mod brep;

@@ -1,0 +1,120 @@
+//! The arena of hash-consed nodes.
+
+use std::hash::{Hash, Hasher};
+
+use rustc_hash::FxHashMap;
+
+use super::node::{Kind, Node, ShapeId};
+use crate::base::Span;
+
+/// All shapes of one evaluation.
+///
+/// ```
+/// use katachi::shape::{Node, ShapeGraph};
+/// use katachi::base::Span;
+/// let mut graph = ShapeGraph::default();
+/// let ball = Node::Sphere { r: 2.0, sides: None };
+/// let a = graph.add(ball.clone(), Span::default());
+/// let b = graph.add(ball, Span::default());
+/// assert_eq!(a, b);
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct ShapeGraph {
+    nodes: Vec<Node>,
+    origins: Vec<Span>,
+    kinds: Vec<Kind>,
+    index: FxHashMap<u64, Vec<ShapeId>>,
+}
+
+impl ShapeGraph {
+    /// The node's number: a new one, or that of an equal node added before. `origin` is the call that
+    /// made it, for diagnostics; the first one is kept.
+    ///
+    /// # Panics
+    /// When a child's number is not of this graph, or solids and profiles are mixed.
+    pub fn add(&mut self, node: Node, origin: Span) -> ShapeId {
+        let key = fingerprint(&node);
+        if let Some(found) = self.find(key, &node) {
+            return found;
+        }
+        let kind = self.kind_of(&node);
+        let id = ShapeId(self.nodes.len() as u32);
+        self.nodes.push(node);
+        self.origins.push(origin);
+        self.kinds.push(kind);
+        self.index.entry(key).or_default().push(id);
+        id
+    }
+
+    /// The node behind a number.
+    pub fn node(&self, id: ShapeId) -> &Node {
+        &self.nodes[id.0 as usize]
+    }
+
+    /// The call that first made it.
+    pub fn origin(&self, id: ShapeId) -> Span {
+        self.origins[id.0 as usize]
+    }
+
+    /// Whether it is a solid or a profile.
+    pub fn kind(&self, id: ShapeId) -> Kind {
+        self.kinds[id.0 as usize]
+    }
+
+    /// The number of nodes.
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Whether there is no node yet.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    fn find(&self, key: u64, node: &Node) -> Option<ShapeId> {
+        let candidates = self.index.get(&key)?;
+        candidates.iter().copied().find(|&id| self.node(id) == node)
+    }
+
+    fn kind_of(&self, node: &Node) -> Kind {
+        match node {
+            Node::Empty(kind) => *kind,
+            Node::Rect { .. }
+            | Node::Ellipse { .. }
+            | Node::Polygon { .. }
+            | Node::Text(_)
+            | Node::ImportProfile { .. }
+            | Node::OffsetProfile { .. }
+            | Node::RoundProfile { .. } => Kind::Profile,
+            Node::Union(list)
+            | Node::Difference(list)
+            | Node::Intersection(list)
+            | Node::Hull(list) => self.common_kind(list),
+            Node::Transform { child, .. } | Node::Tag { child, .. } | Node::Paint { child, .. } => {
+                self.kind(*child)
+            }
+            _ => Kind::Solid,
+        }
+    }
+
+    fn common_kind(&self, list: &[ShapeId]) -> Kind {
+        let mut kinds = list.iter().map(|&id| self.kind(id));
+        let first = kinds.next().unwrap_or(Kind::Solid);
+        assert!(kinds.all(|kind| kind == first), "solids and profiles cannot be mixed");
+        first
+    }
+}
+
+/// A hash of the node's printed form: stable, and free of a second definition of equality.
+fn fingerprint(node: &Node) -> u64 {
+    struct Feed(rustc_hash::FxHasher);
+    impl std::fmt::Write for Feed {
+        fn write_str(&mut self, s: &str) -> std::fmt::Result {
+            s.hash(&mut self.0);
+            Ok(())
+        }
+    }
+    let mut feed = Feed(rustc_hash::FxHasher::default());
+    let _ = std::fmt::write(&mut feed, format_args!("{node:?}"));
+    feed.0.finish()
+}

@@ -1,0 +1,12 @@
+//! The shape graph: what evaluation builds and realisation turns into solids.
+//!
+//! Pure data. Nodes are immutable and hash-consed: equal construction gives the same
+//! [`ShapeId`], so that equality is an integer comparison and results can be kept by node.
+
+pub mod geometry;
+pub mod graph;
+pub mod node;
+
+pub use geometry::{Geometry, GeometryError, Measures};
+pub use graph::ShapeGraph;
+pub use node::{Kind, Node, ShapeId};
