@@ -1,1 +1,3 @@
+//! The `katachi` command.
+
 fn main() {}
