@@ -1,13 +1,17 @@
 //! What all kernels share: numbers, placements, surfaces and meshes. It knows no language and no kernel.
 
+pub mod flatten;
 pub mod mesh;
+pub mod outline;
+pub mod overlay;
 pub mod placement;
 pub mod region;
 pub mod surface;
 pub mod tolerance;
+pub mod trig;
 
 pub use mesh::{FaceRef, Origin, PolyMesh};
 pub use placement::Placement;
-pub use region::{Contour, Region};
+pub use region::{Contour, EdgeCurve, Piece, Region};
 pub use surface::Surface;
 pub use tolerance::Tolerance;
