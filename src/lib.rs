@@ -3,5 +3,6 @@
 pub mod base;
 pub mod geom;
 pub mod kernel;
+pub mod output;
 pub mod shape;
 pub mod syntax;
