@@ -1,7 +1,9 @@
 #![doc = "Katachi (形): a small declarative language for solid modelling."]
 
+pub mod app;
 pub mod base;
 pub mod geom;
 pub mod kernel;
+pub mod session;
 pub mod shape;
 pub mod syntax;

@@ -26,11 +26,11 @@ impl Feed {
     }
 
     fn plane(&mut self, v: DVec2) {
-        v.to_array().map(|x| self.real(x));
+        v.to_array().into_iter().for_each(|x| self.real(x));
     }
 
     fn space(&mut self, v: DVec3) {
-        v.to_array().map(|x| self.real(x));
+        v.to_array().into_iter().for_each(|x| self.real(x));
     }
 
     fn list(&mut self, ids: &[ShapeId]) {
