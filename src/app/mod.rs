@@ -3,4 +3,5 @@
 pub mod cli;
 pub mod disk;
 pub mod render;
+pub mod stopwatch;
 pub mod write;
