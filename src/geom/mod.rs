@@ -1,10 +1,13 @@
 //! What all kernels share: numbers, placements, surfaces and meshes. It knows no language and no kernel.
 
 pub mod mesh;
+pub mod orient;
 pub mod placement;
 pub mod region;
 pub mod surface;
 pub mod tolerance;
+pub mod triangulate;
+pub mod trig;
 
 pub use mesh::{FaceRef, Origin, PolyMesh};
 pub use placement::Placement;
