@@ -1,0 +1,224 @@
+//! Pairs of brackets. Behind this pass every bracket has its partner, so that the parser meets no
+//! missing one and a mistake in one place does not swallow the rest of the file.
+
+use super::token::{Token, TokenSet, Tokens};
+use crate::base::{Code, Diagnostic, SourceId, Span};
+
+/// Pairs the brackets: closing ones that close nothing are dropped, missing ones are put at the end
+/// of the line before the text moves back out. Also tells the `(` of a lambda from other ones, and
+/// takes `;` for a line end.
+pub fn balance(source: SourceId, text: &str, tokens: Tokens) -> (Tokens, Vec<Diagnostic>) {
+    let mut pass = Balance { source, text, tokens, ..Balance::default() };
+    for index in 0..pass.tokens.len() {
+        pass.take(index);
+    }
+    pass.close_all(pass.tokens.len(), 0);
+    pass.finish()
+}
+
+#[derive(Default)]
+struct Balance<'s> {
+    source: SourceId,
+    text: &'s str,
+    tokens: Tokens,
+    /// Indices of the open brackets.
+    open: Vec<usize>,
+    /// How many of them are of each kind.
+    counts: [usize; 4],
+    /// Tokens to leave out.
+    dropped: Vec<usize>,
+    /// Closing brackets to put before the token of this index.
+    inserted: Vec<(usize, Token)>,
+    semicolons: Vec<usize>,
+    diagnostics: Vec<Diagnostic>,
+}
+
+fn closer_of(opener: Token) -> Token {
+    match opener {
+        Token::LBracket => Token::RBracket,
+        Token::LBrace => Token::RBrace,
+        Token::HoleOpen => Token::HoleClose,
+        _ => Token::RParen,
+    }
+}
+
+fn kind_of(closer: Token) -> usize {
+    match closer {
+        Token::RParen => 0,
+        Token::RBracket => 1,
+        Token::RBrace => 2,
+        _ => 3,
+    }
+}
+
+impl Balance<'_> {
+    fn take(&mut self, index: usize) {
+        let token = self.tokens.kinds[index];
+        if TokenSet::OPENERS.has(token) {
+            self.open.push(index);
+            self.counts[kind_of(closer_of(token))] += 1;
+        } else if TokenSet::CLOSERS.has(token) {
+            self.close(index, token);
+        } else if token == Token::Semicolon {
+            self.semicolon(index);
+        }
+    }
+
+    fn close(&mut self, index: usize, closer: Token) {
+        if self.counts[kind_of(closer)] > 0 {
+            let matches = |&at: &usize| closer_of(self.tokens.kinds[at]) == closer;
+            let depth = self.open.iter().rposition(matches).unwrap_or(0);
+            self.close_all(index, depth + 1);
+            self.pop(index);
+        } else if let Some(&opener) = self.open.last()
+            && !self.line_between(opener, index)
+        {
+            self.swap(opener, index, closer);
+        } else {
+            self.dropped.push(index);
+            let span = self.span(index);
+            let message = format!("this {} closes nothing", closer.describe());
+            self.diagnostics.push(
+                Diagnostic::error(Code::Syntax, message)
+                    .label(span, "no bracket is open here")
+                    .help("remove it, or open it before")
+                    .fix(span, ""),
+            );
+        }
+    }
+
+    /// Takes the innermost open bracket as closed by the token at `index`.
+    fn pop(&mut self, index: usize) {
+        let Some(opener) = self.open.pop() else { return };
+        let kind = self.tokens.kinds[opener];
+        self.counts[kind_of(closer_of(kind))] -= 1;
+        let arrow = self.tokens.get(index + 1) == Some(Token::FatArrow);
+        if kind == Token::LParen && arrow {
+            self.tokens.kinds[opener] = Token::LambdaParen;
+        }
+    }
+
+    /// `(1, 2]`: one bracket was mistaken for another.
+    fn swap(&mut self, opener: usize, index: usize, closer: Token) {
+        let kind = self.tokens.kinds[opener];
+        let needed = closer_of(kind);
+        let message = format!("{} is closed with {}", kind.describe(), closer.describe());
+        let (from, to) = (self.span(opener), self.span(index));
+        self.diagnostics.push(
+            Diagnostic::error(Code::Syntax, message)
+                .label(to, format!("{} is needed here", needed.describe()))
+                .label(from, "opened here")
+                .fix(to, needed.describe().trim_matches('`')),
+        );
+        self.tokens.kinds[index] = needed;
+        self.pop(index);
+    }
+
+    /// Closes the brackets open above the first `keep` ones, before the token at `index`.
+    fn close_all(&mut self, index: usize, keep: usize) {
+        let mut reported = None;
+        while self.open.len() > keep {
+            let Some(&opener) = self.open.last() else { return };
+            let at = self.place_of_missing(opener, index);
+            let closer = closer_of(self.tokens.kinds[opener]);
+            self.inserted.push((at, closer));
+            self.pop(at);
+            if reported != Some(at) {
+                self.report_missing(opener, closer, at);
+            }
+            reported = Some(at);
+        }
+    }
+
+    /// Where the missing partner of a bracket belongs: at the first line end behind which the text
+    /// is indented no deeper than the line that opened it, at the latest before `limit`.
+    fn place_of_missing(&self, opener: usize, limit: usize) -> usize {
+        let indent = self.indent(opener);
+        let line_ends = (opener + 1..limit).filter(|&i| self.tokens.kinds[i] == Token::Newline);
+        let mut outside = line_ends.filter(|&i| {
+            let next = self.tokens.get(i + 1);
+            i + 1 < limit
+                && self.indent(i + 1) <= indent
+                && next.is_some_and(|t| !TokenSet::CLOSERS.has(t) && t != Token::Dot)
+        });
+        outside.next().unwrap_or(limit)
+    }
+
+    /// Bytes of white space at the start of the line of a token.
+    fn indent(&self, index: usize) -> usize {
+        let before = &self.text[..self.tokens.spans[index].0 as usize];
+        let start = before.rfind(['\n', '\r']).map_or(0, |i| i + 1);
+        let line = &self.text[start..];
+        line.len() - line.trim_start_matches([' ', '\t']).len()
+    }
+
+    fn line_between(&self, from: usize, to: usize) -> bool {
+        self.tokens.kinds[from..to].contains(&Token::Newline)
+    }
+
+    fn report_missing(&mut self, opener: usize, closer: Token, at: usize) {
+        let opened = self.span(opener);
+        let end = self.tokens.spans[at - 1].1;
+        let place = Span::new(self.source, end, end);
+        let kind = self.tokens.kinds[opener].describe();
+        let diagnostic = Diagnostic::error(Code::Syntax, format!("this {kind} is never closed"))
+            .label(opened, "opened here")
+            .label(place, format!("{} is needed here, or before", closer.describe()))
+            .fix(place, closer.describe().trim_matches('`'));
+        self.diagnostics.push(diagnostic);
+    }
+
+    /// At a line end `;` is dropped, between statements it stands for a line end, in parentheses it
+    /// is left to the parser.
+    fn semicolon(&mut self, index: usize) {
+        let inside = self.open.last().map(|&at| self.tokens.kinds[at]);
+        if inside.is_some_and(|kind| kind != Token::LBrace) {
+            return;
+        }
+        self.semicolons.push(index);
+        self.tokens.kinds[index] = Token::Newline;
+    }
+
+    fn span(&self, index: usize) -> Span {
+        let (start, end) = self.tokens.spans[index];
+        Span::new(self.source, start, end)
+    }
+
+    fn report_semicolons(&mut self) {
+        let Some(&first) = self.semicolons.first() else { return };
+        let span = self.span(first);
+        let mut diagnostic = Diagnostic::error(Code::Syntax, "a statement ends with its line")
+            .label(span, "`;` is not needed")
+            .help("remove it; two statements go on two lines")
+            .fix(span, "");
+        let others = self.semicolons.len() - 1;
+        if others > 0 {
+            diagnostic = diagnostic.note(format!("{others} more of them in this file"));
+        }
+        self.diagnostics.push(diagnostic);
+    }
+
+    fn finish(mut self) -> (Tokens, Vec<Diagnostic>) {
+        self.report_semicolons();
+        if self.dropped.is_empty() && self.inserted.is_empty() {
+            return (self.tokens, self.diagnostics);
+        }
+        // Stable: of two closers at one place the inner one was put in first.
+        self.inserted.sort_by_key(|(at, _)| *at);
+        let mut out = Tokens::with_capacity(self.tokens.len() + self.inserted.len());
+        let (mut inserted, mut dropped) = (self.inserted.iter().peekable(), self.dropped.iter());
+        let mut next_dropped = dropped.next();
+        for index in 0..=self.tokens.len() {
+            while let Some((_, closer)) = inserted.next_if(|(at, _)| *at == index) {
+                let end = out.spans.last().map_or(0, |span| span.1);
+                out.push(*closer, (end, end));
+            }
+            if next_dropped == Some(&index) {
+                next_dropped = dropped.next();
+            } else if index < self.tokens.len() {
+                out.push(self.tokens.kinds[index], self.tokens.spans[index]);
+            }
+        }
+        (out, self.diagnostics)
+    }
+}

@@ -1,0 +1,96 @@
+//! Which line ends are the end of a statement.
+//!
+//! A line end counts unless the innermost open bracket is `( )` or `[ ]`, or the line ends in an
+//! operator, `=`, `,`, `.`, `=>` or `..`, or the next line starts with `.`, `else`, `and`, `or`, or
+//! with `step`, `when`, `in` or `with` that no `=` follows, or with an infix operator followed by a
+//! space. It does not count at the start and end of a file, behind `{` and before `}` either.
+
+use super::token::{Token, TokenSet, Tokens};
+
+/// A line that ends in one of these goes on.
+const OPEN_ENDED: TokenSet = TokenSet::OPERATORS.or(TokenSet::of(&[
+    Token::Assign,
+    Token::Comma,
+    Token::Dot,
+    Token::FatArrow,
+    Token::Not,
+]));
+
+/// A line that starts with one of these goes on from the line before.
+const CONTINUING: TokenSet = TokenSet::of(&[Token::Dot, Token::Else, Token::And, Token::Or]);
+
+/// So does one that starts with one of these, if no `=` follows.
+const CONTINUING_WORDS: TokenSet =
+    TokenSet::of(&[Token::Step, Token::When, Token::In, Token::With]);
+
+/// Drops the line ends that end no statement, and `///` lines that stand before no item: inside
+/// brackets, where they are plain comments, and at the end of the file.
+pub fn newlines(text: &str, tokens: &Tokens) -> Tokens {
+    let mut kept = Tokens::with_capacity(tokens.len());
+    let mut open: Vec<Token> = vec![];
+    for (index, (&kind, &span)) in tokens.kinds.iter().zip(&tokens.spans).enumerate() {
+        match kind {
+            Token::Newline => {
+                if ends_statement(text, tokens, index, open.last(), kept.kinds.last()) {
+                    kept.push(kind, span);
+                }
+                continue;
+            }
+            Token::Doc if !open.is_empty() => continue,
+            _ if TokenSet::OPENERS.has(kind) => open.push(kind),
+            _ if TokenSet::CLOSERS.has(kind) => drop_pair(&mut open, &mut kept),
+            _ => {}
+        }
+        kept.push(kind, span);
+    }
+    drop_tail(&mut kept);
+    kept
+}
+
+/// Closes a bracket; a line end before it does not count.
+fn drop_pair(open: &mut Vec<Token>, kept: &mut Tokens) {
+    open.pop();
+    if kept.kinds.last() == Some(&Token::Newline) {
+        kept.truncate(kept.len() - 1);
+    }
+}
+
+fn drop_tail(kept: &mut Tokens) {
+    while let Some(Token::Newline | Token::Doc) = kept.kinds.last() {
+        kept.truncate(kept.len() - 1);
+    }
+}
+
+fn ends_statement(
+    text: &str,
+    tokens: &Tokens,
+    index: usize,
+    innermost: Option<&Token>,
+    before: Option<&Token>,
+) -> bool {
+    let Some(&before) = before else { return false };
+    if innermost.is_some_and(|open| *open != Token::LBrace) {
+        return false;
+    }
+    if matches!(before, Token::LBrace | Token::Newline) || OPEN_ENDED.has(before) {
+        return false;
+    }
+    !continues(text, tokens, index + 1)
+}
+
+/// Whether the line that starts with this token goes on from the line before.
+fn continues(text: &str, tokens: &Tokens, index: usize) -> bool {
+    let Some(kind) = tokens.get(index) else { return false };
+    if CONTINUING.has(kind) {
+        return true;
+    }
+    if CONTINUING_WORDS.has(kind) {
+        return tokens.get(index + 1) != Some(Token::Assign);
+    }
+    TokenSet::OPERATORS.has(kind) && space_follows(text, tokens.spans[index].1)
+}
+
+fn space_follows(text: &str, at: u32) -> bool {
+    let rest = &text[at as usize..];
+    rest.starts_with(char::is_whitespace) || rest.starts_with("//") || rest.starts_with("/*")
+}

@@ -1,0 +1,102 @@
+//! The smallest parsers: single tokens, names, numbers, strings.
+
+use std::sync::Arc;
+
+use chumsky::prelude::*;
+
+use super::{Boxed, Extra, Fault, Input, Parse, Production, state::here};
+use crate::syntax::{
+    ast::{Expr, ExprKind, Name, Piece, Text},
+    number, text,
+    token::{Token, TokenSet},
+};
+
+/// Any one of the given tokens.
+pub(super) fn take<'s>(set: TokenSet) -> impl Parse<'s, Token> {
+    custom::<_, Input<'s>, _, Extra<'s>>(move |input| match input.peek() {
+        Some(token) if set.has(token) => {
+            input.skip();
+            Ok(token)
+        }
+        _ => Err(Fault { at: *input.cursor().inner(), expected: set }),
+    })
+}
+
+/// This token.
+pub(super) fn token<'s>(token: Token) -> impl Parse<'s, Token> {
+    take(TokenSet::of(&[token]))
+}
+
+/// Marks a production as used where its parser succeeds.
+pub(super) fn marked<'s, T: 's>(production: Production, parser: impl Parse<'s, T>) -> Boxed<'s, T> {
+    parser
+        .map_with(move |value, extra| {
+            extra.state().mark(production);
+            value
+        })
+        .boxed()
+}
+
+fn word<'s>(set: TokenSet) -> impl Parse<'s, Name> {
+    take(set).map_with(|_, extra| {
+        let at = extra.span().start;
+        let state = extra.state();
+        state.mark(Production::Name);
+        Name { text: state.word(at), span: state.span(at, at + 1) }
+    })
+}
+
+/// NAME
+pub(super) fn name<'s>() -> impl Parse<'s, Name> {
+    word(TokenSet::NAMES)
+}
+
+/// What may follow a `.`: any word.
+pub(super) fn member_name<'s>() -> impl Parse<'s, Name> {
+    word(TokenSet::NAMES.or(TokenSet::RESERVED))
+}
+
+/// NUMBER
+pub(super) fn number<'s>() -> impl Parse<'s, Expr> {
+    token(Token::Number).map_with(|_, extra| {
+        let at = extra.span().start;
+        let state = extra.state();
+        state.mark(Production::Number);
+        let span = state.span(at, at + 1);
+        // The lexer has refused what cannot be read.
+        let kind = match number::read(state.slice(at)) {
+            Ok((value, unit)) => ExprKind::Number { value, unit },
+            Err(_) => ExprKind::Error,
+        };
+        Expr { kind, span }
+    })
+}
+
+/// STRING
+pub(super) fn string<'s>(expr: impl Parse<'s, Expr>) -> Boxed<'s, Text> {
+    let literal = token(Token::StringText).map_with(|_, extra| {
+        let at = extra.span().start;
+        Piece::Literal(text::unescape(extra.state().slice(at)).into())
+    });
+    let hole = token(Token::HoleOpen)
+        .ignore_then(expr.map(|e| Piece::Expr(Box::new(e))))
+        .then_ignore(token(Token::HoleClose));
+    let pieces = literal.or(hole).repeated().collect();
+    let string = token(Token::StringStart)
+        .ignore_then(pieces)
+        .then_ignore(token(Token::StringEnd))
+        .map_with(|pieces, extra| Text { pieces, span: here(extra) });
+    marked(Production::Text, string)
+}
+
+/// DOC NL, once or more: the lines joined.
+pub(super) fn doc<'s>() -> Boxed<'s, Arc<str>> {
+    let line = token(Token::Doc)
+        .map_with(|_, extra| {
+            let at = extra.span().start;
+            super::state::doc_line(extra.state().slice(at))
+        })
+        .then_ignore(token(Token::Newline));
+    let lines = line.repeated().at_least(1).collect::<Vec<&str>>();
+    marked(Production::Doc, lines.map(|lines| lines.join("\n").into()))
+}

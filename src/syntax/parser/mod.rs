@@ -1,0 +1,87 @@
+//! From tokens to the tree, with chumsky: one function for each production of
+//! `grammar/katachi.ebnf`, named like it.
+
+mod atom;
+mod expr;
+mod fault;
+mod hint;
+mod item;
+mod operator;
+mod primary;
+mod production;
+mod recover;
+mod state;
+mod stmt;
+
+use chumsky::prelude::*;
+
+pub use production::{Production, productions};
+
+use self::{fault::Fault, production::Productions, state::State};
+use super::{
+    ast::Program,
+    bracket, depth,
+    lexer::{self, Lexed},
+    newline,
+    token::{Token, Tokens},
+};
+use crate::base::{Diagnostic, SourceId, Span};
+
+type Input<'s> = &'s [Token];
+type Extra<'s> = extra::Full<Fault, State<'s>, ()>;
+type Boxed<'s, T> = chumsky::Boxed<'s, 's, Input<'s>, T, Extra<'s>>;
+
+/// A parser of this grammar.
+trait Parse<'s, T>: Parser<'s, Input<'s>, T, Extra<'s>> + Clone + 's {}
+impl<'s, T, P: Parser<'s, Input<'s>, T, Extra<'s>> + Clone + 's> Parse<'s, T> for P {}
+
+/// Reads a whole file. The tree holds everything that could be read: a broken value is an
+/// [`ExprKind::Error`](super::ast::ExprKind::Error), so that its name stays known. Diagnostics are
+/// in source order, at most one for each mistake. Never panics, whatever the text.
+///
+/// ```
+/// use katachi::{base::SourceId, syntax::parse};
+/// let (program, diagnostics) = parse(SourceId(0), "w = 40mm\nh = * 2\nbox(w, 30, 5)\n");
+/// assert_eq!(program.items.len(), 3);
+/// assert_eq!(diagnostics.len(), 1);
+/// ```
+pub fn parse(source: SourceId, text: &str) -> (Program, Vec<Diagnostic>) {
+    let (program, diagnostics, _) = read(source, text);
+    (program, diagnostics)
+}
+
+fn read(source: SourceId, text: &str) -> (Program, Vec<Diagnostic>, Productions) {
+    let lexed = lexer::lex(source, text);
+    let doc = state::file_doc(text, &lexed);
+    let Lexed { tokens, mut diagnostics, .. } = lexed;
+    let (tokens, unbalanced) = bracket::balance(source, text, tokens);
+    diagnostics.extend(unbalanced);
+    let (tokens, too_deep) = depth::limit(source, tokens);
+    diagnostics.extend(too_deep);
+    let tokens = newline::newlines(text, &tokens);
+    let mut state = State::new(source, text, &tokens);
+    let (items, faults) =
+        item::program().parse_with_state(&tokens.kinds, &mut state).into_output_errors();
+    let used = state.used();
+    let known: Vec<Span> = diagnostics.iter().filter_map(Diagnostic::span).collect();
+    diagnostics.extend(messages(source, text, &tokens, faults, &known));
+    diagnostics.sort_by_key(|d| d.span().map_or(0, |span| span.start));
+    let span = Span::new(source, 0, text.len() as u32);
+    (Program { doc, items: items.unwrap_or_default(), span }, diagnostics, used)
+}
+
+/// What the parser's faults mean in words; none where an earlier pass has spoken already.
+fn messages(
+    source: SourceId,
+    text: &str,
+    tokens: &Tokens,
+    faults: Vec<Fault>,
+    known: &[Span],
+) -> Vec<Diagnostic> {
+    let context = hint::Context::new(source, text, tokens);
+    let fresh = faults.iter().filter(|fault| !context.is_known(fault.at, known));
+    fresh.map(|fault| context.diagnostic(fault)).collect()
+}
+
+#[cfg(test)]
+mod tests;

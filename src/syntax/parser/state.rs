@@ -1,0 +1,101 @@
+//! What the parser needs beside the tokens: their places, the text, and names already seen.
+
+use std::sync::Arc;
+
+use chumsky::{
+    input::{Checkpoint, Cursor, MapExtra},
+    inspector::Inspector,
+};
+use rustc_hash::FxHashMap;
+use unicode_normalization::{UnicodeNormalization, is_nfc};
+
+use super::{Extra, Input, Production, Productions};
+use crate::{
+    base::{SourceId, Span},
+    syntax::{
+        lexer::Lexed,
+        token::{Token, Tokens},
+    },
+};
+
+pub(super) struct State<'s> {
+    source: SourceId,
+    text: &'s str,
+    spans: &'s [(u32, u32)],
+    names: FxHashMap<&'s str, Arc<str>>,
+    used: Productions,
+}
+
+impl<'s> State<'s> {
+    pub fn new(source: SourceId, text: &'s str, tokens: &'s Tokens) -> State<'s> {
+        let used = Productions::default();
+        State { source, text, spans: &tokens.spans, names: FxHashMap::default(), used }
+    }
+
+    pub fn used(&self) -> Productions {
+        self.used
+    }
+
+    pub fn mark(&mut self, production: Production) {
+        self.used.add(production);
+    }
+
+    /// The bytes from the first to the last of the tokens `start..end`; where there are none, the
+    /// place behind the token before.
+    pub fn span(&self, start: usize, end: usize) -> Span {
+        if start < end {
+            return Span::new(self.source, self.spans[start].0, self.spans[end - 1].1);
+        }
+        let at = start.checked_sub(1).map_or(0, |before| self.spans[before].1);
+        Span::new(self.source, at, at)
+    }
+
+    /// The characters of one token.
+    pub fn slice(&self, index: usize) -> &'s str {
+        let (start, end) = self.spans[index];
+        &self.text[start as usize..end as usize]
+    }
+
+    /// The word of one token in Unicode NFC; equal words share their text.
+    pub fn word(&mut self, index: usize) -> Arc<str> {
+        let word = self.slice(index);
+        let normal =
+            || if is_nfc(word) { word.into() } else { word.nfc().collect::<String>().into() };
+        self.names.entry(word).or_insert_with(normal).clone()
+    }
+}
+
+/// Productions marked on a path that is given up do not count.
+impl<'s> Inspector<'s, Input<'s>> for State<'s> {
+    type Checkpoint = Productions;
+
+    fn on_token(&mut self, _: &Token) {}
+
+    fn on_save<'p>(&self, _: &Cursor<'s, 'p, Input<'s>>) -> Productions {
+        self.used
+    }
+
+    fn on_rewind<'p>(&mut self, marker: &Checkpoint<'s, 'p, Input<'s>, Productions>) {
+        self.used = *marker.inspector();
+    }
+}
+
+/// The bytes that the parser just run has read.
+pub(super) fn here<'s>(extra: &mut MapExtra<'s, '_, Input<'s>, Extra<'s>>) -> Span {
+    let range = extra.span();
+    extra.state().span(range.start, range.end)
+}
+
+/// The `//!` lines of a file, joined by line ends.
+pub(super) fn file_doc(text: &str, lexed: &Lexed) -> Option<Arc<str>> {
+    let comments = lexed.comments.iter().filter(|(kind, _)| *kind == Token::FileDoc);
+    let lines: Vec<&str> =
+        comments.map(|(_, span)| doc_line(&text[span.start as usize..span.end as usize])).collect();
+    if lines.is_empty() { None } else { Some(lines.join("\n").into()) }
+}
+
+/// What stands behind `///` or `//!`, without the space after it.
+pub(super) fn doc_line(comment: &str) -> &str {
+    let line = comment[3..].trim_end();
+    line.strip_prefix(' ').unwrap_or(line)
+}
