@@ -4,6 +4,7 @@ pub mod app;
 pub mod base;
 pub mod geom;
 pub mod kernel;
+pub mod output;
 pub mod realize;
 pub mod session;
 pub mod shape;

@@ -1,0 +1,223 @@
+//! OpenSCAD source: the construction tree of shapes, written for OpenSCAD 2021 and later.
+//!
+//! Every part is a module `part_<name>`, every tagged shape a module `tag_<name>`, every other shape
+//! used twice a module `shape_<n>`; the parts are called at the end. What differs between the two
+//! languages is turned here: twist is left-handed there, a full `rotate_extrude` starts at -x there,
+//! faces of a `polyhedron` run clockwise there, and a profile must lie in xy there.
+//!
+//! What OpenSCAD cannot express (imported meshes, and texts and imported figures, whose fonts and
+//! files it may not have) is asked of [`Realized`] and written as points.
+//!
+//! # Departures
+//! True curves get the facet count that the tolerance asks for. Where both languages approximate
+//! (offsets with round corners, twists) facets need not correspond, both are within the tolerance.
+//! Of nested colours the outermost shows in OpenSCAD, the innermost here; shapes do not differ.
+
+use std::{collections::BTreeSet, fmt::Write};
+
+use rustc_hash::FxHashMap;
+use thiserror::Error;
+
+use crate::{
+    geom::{PolyMesh, Region, Tolerance},
+    shape::{Node, ShapeGraph, ShapeId},
+};
+
+mod facets;
+mod plane;
+mod points;
+mod source;
+
+/// Deeper trees are cut into modules: keeps the source readable and this writer's stack small.
+const DEEPEST: u32 = 24;
+
+/// Shapes made real: what the writer asks for where a construction has no word in OpenSCAD.
+pub trait Realized {
+    /// The boundary of a solid in mm; `None` if it cannot be made.
+    fn mesh(&self, shape: ShapeId) -> Option<PolyMesh>;
+
+    /// A profile as polygons of its plane in mm; `None` if it cannot be made.
+    fn region(&self, shape: ShapeId) -> Option<Region>;
+}
+
+/// Why there is no OpenSCAD source.
+#[derive(Clone, PartialEq, Debug, Error)]
+pub enum ScadError {
+    /// [`Realized`] did not give what was asked for.
+    #[error(
+        "the {what} could not be made, and OpenSCAD has no other way to say it than its points"
+    )]
+    Unrealized {
+        /// The shape.
+        shape: ShapeId,
+        /// Which kind it is of.
+        what: &'static str,
+    },
+    /// A profile seen edge-on: its placement flattens it.
+    #[error("a profile is flattened to a line by its placement; it needs an area")]
+    Flattened {
+        /// The profile.
+        shape: ShapeId,
+    },
+}
+
+/// The source of named parts. Fails only where `realized` does not give what has to be written as
+/// points, or a profile is flattened.
+///
+/// ```
+/// use katachi::base::Span;
+/// use katachi::geom::{PolyMesh, Region, Tolerance};
+/// use katachi::output::scad;
+/// use katachi::shape::{Node, ShapeGraph, ShapeId};
+/// struct Nothing;
+/// impl scad::Realized for Nothing {
+///     fn mesh(&self, _: ShapeId) -> Option<PolyMesh> { None }
+///     fn region(&self, _: ShapeId) -> Option<Region> { None }
+/// }
+/// let mut graph = ShapeGraph::default();
+/// let pin = graph.add(Node::Cone { r1: 2., r2: 2., h: 9., sides: Some(6) }, Span::default());
+/// let text = scad::write(&graph, &[("pin", pin)], Tolerance::DEFAULT, &Nothing).unwrap();
+/// assert!(text.contains("module part_pin() {\n  cylinder(h = 9, r = 2, $fn = 6);\n}"));
+/// ```
+pub fn write(
+    graph: &ShapeGraph,
+    parts: &[(&str, ShapeId)],
+    tolerance: Tolerance,
+    realized: &dyn Realized,
+) -> Result<String, ScadError> {
+    let plan = Plan::new(graph, parts);
+    let mut writer = Writer {
+        graph,
+        tolerance,
+        realized,
+        modules: FxHashMap::default(),
+        text: String::from("// Made by Katachi. Unit: millimetre.\n\n"),
+    };
+    let mut names = Names::default();
+    for (id, name) in plan.modules {
+        let name = names.claim(&name);
+        writer.module(&name, id)?;
+        writer.modules.insert(id, name);
+    }
+    let mut calls = String::new();
+    for &(name, id) in parts {
+        let name = names.claim(&format!("part_{name}"));
+        writer.module(&name, id)?;
+        let _ = writeln!(calls, "{name}();");
+    }
+    writer.text.push_str(&calls);
+    Ok(writer.text)
+}
+
+/// What is written as a module of its own, children first.
+struct Plan {
+    modules: Vec<(ShapeId, String)>,
+}
+
+impl Plan {
+    /// A child's number is always below its parent's, so one walk down the numbers counts the uses of
+    /// all shapes and one walk up finds their heights.
+    fn new(graph: &ShapeGraph, parts: &[(&str, ShapeId)]) -> Plan {
+        let mut uses = vec![0u32; graph.len()];
+        parts.iter().for_each(|(_, id)| uses[id.0 as usize] += 1);
+        for i in (0..graph.len()).rev() {
+            if uses[i] > 0 {
+                let node = graph.node(ShapeId(i as u32));
+                children(node).iter().for_each(|child| uses[child.0 as usize] += 1);
+            }
+        }
+        let mut heights = vec![0u32; graph.len()];
+        let mut modules = vec![];
+        for i in (0..graph.len()).filter(|&i| uses[i] > 0) {
+            let id = ShapeId(i as u32);
+            let node = graph.node(id);
+            let highest = children(node).iter().map(|child| heights[child.0 as usize] + 1).max();
+            heights[i] = highest.unwrap_or(0);
+            let name = match node {
+                Node::Tag { name, .. } => Some(format!("tag_{name}")),
+                _ if heights[i] >= DEEPEST || (uses[i] > 1 && is_long(node)) => {
+                    Some(format!("shape_{}", modules.len() + 1))
+                }
+                _ => None,
+            };
+            if let Some(name) = name {
+                heights[i] = 0;
+                modules.push((id, name));
+            }
+        }
+        Plan { modules }
+    }
+}
+
+/// The shapes a node is made of.
+fn children(node: &Node) -> &[ShapeId] {
+    match node {
+        Node::Union(list)
+        | Node::Difference(list)
+        | Node::Intersection(list)
+        | Node::Hull(list) => list,
+        Node::Extrude { profile, .. }
+        | Node::Revolve { profile, .. }
+        | Node::OffsetProfile { profile, .. }
+        | Node::RoundProfile { profile, .. } => std::slice::from_ref(profile),
+        Node::Transform { child, .. } | Node::Tag { child, .. } | Node::Paint { child, .. } => {
+            std::slice::from_ref(child)
+        }
+        _ => &[],
+    }
+}
+
+/// Whether a second writing of the node would be longer than a call.
+fn is_long(node: &Node) -> bool {
+    !matches!(
+        node,
+        Node::Empty(_)
+            | Node::Box { .. }
+            | Node::Cone { .. }
+            | Node::Sphere { .. }
+            | Node::Rect { .. }
+            | Node::Ellipse { .. }
+    )
+}
+
+/// Identifiers, each given once.
+#[derive(Default)]
+struct Names(BTreeSet<String>);
+
+impl Names {
+    /// The wish with what OpenSCAD's names cannot hold replaced, and numbered if it is taken.
+    fn claim(&mut self, wish: &str) -> String {
+        let letter = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+        let plain: String = wish.chars().map(letter).collect();
+        let mut name = plain.clone();
+        let mut number = 2;
+        while !self.0.insert(name.clone()) {
+            name = format!("{plain}_{number}");
+            number += 1;
+        }
+        name
+    }
+}
+
+/// The source as it grows.
+struct Writer<'a> {
+    graph: &'a ShapeGraph,
+    tolerance: Tolerance,
+    realized: &'a dyn Realized,
+    modules: FxHashMap<ShapeId, String>,
+    text: String,
+}
+
+impl Writer<'_> {
+    fn module(&mut self, name: &str, id: ShapeId) -> Result<(), ScadError> {
+        let _ = writeln!(self.text, "module {name}() {{");
+        self.shape(id, 1)?;
+        self.text.push_str("}\n\n");
+        Ok(())
+    }
+
+    /// One line at a depth.
+    fn line(&mut self, depth: usize, line: &str) {
+        let _ = writeln!(self.text, "{:1$}{line}", "", 2 * depth);
+    }
+}

@@ -1,0 +1,105 @@
+//! Profiles that do not lie in xy.
+//!
+//! OpenSCAD's plane figures know no third dimension. A profile in another plane is written as a figure
+//! in xy, in a frame of its plane, and the frame is applied to the solid made of it.
+
+use glam::{DMat3, DVec2, DVec3};
+
+use super::{ScadError, Writer, children};
+use crate::{
+    geom::Placement,
+    shape::{Node, ShapeId},
+};
+
+/// Whether a placement maps the xy plane onto itself and keeps its upper side up.
+pub(super) fn keeps_plane(placement: &Placement) -> bool {
+    let m = placement.linear();
+    let flat = m.x_axis.z == 0.0 && m.y_axis.z == 0.0 && placement.offset().z == 0.0;
+    flat && m.z_axis.z > 0.0
+}
+
+/// The rigid frame of the image of xy: origin and x direction are those of the placement, z is the
+/// normal on the side where the placement takes +z. `None` if the image has no area.
+pub(super) fn frame(placement: &Placement) -> Option<Placement> {
+    let m = placement.linear();
+    let normal = m.x_axis.cross(m.y_axis).try_normalize()?;
+    let z = if normal.dot(m.z_axis) < 0.0 { -normal } else { normal };
+    let x = m.x_axis.normalize();
+    Some(Placement::new(DMat3::from_cols(x, z.cross(x), z), placement.offset()))
+}
+
+/// The inverse of a rigid frame.
+pub(super) fn inverse(frame: &Placement) -> Placement {
+    let turned = frame.linear().transpose();
+    Placement::new(turned, -(turned * frame.offset()))
+}
+
+/// What a placement does within xy, as a placement that leaves z alone.
+pub(super) fn within(placement: &Placement) -> Placement {
+    let m = placement.linear();
+    let axis = |v: DVec3| DVec2::new(v.x, v.y).extend(0.0);
+    let linear = DMat3::from_cols(axis(m.x_axis), axis(m.y_axis), DVec3::Z);
+    Placement::new(linear, axis(placement.offset()))
+}
+
+impl Writer<'_> {
+    /// Whether a profile stays in xy all the way down.
+    pub(super) fn is_flat(&self, id: ShapeId) -> bool {
+        let mut rest = vec![id];
+        let mut seen = rustc_hash::FxHashSet::default();
+        while let Some(id) = rest.pop() {
+            let node = self.graph.node(id);
+            if matches!(node, Node::Transform { placement, .. } if !keeps_plane(placement)) {
+                return false;
+            }
+            rest.extend(children(node).iter().filter(|&&child| seen.insert(child)));
+        }
+        true
+    }
+
+    /// The frame of a profile's plane, that of its first figure.
+    pub(super) fn frame_of(&self, id: ShapeId) -> Result<Placement, ScadError> {
+        let (mut at, mut placement) = (id, Placement::IDENTITY);
+        while !self.is_flat(at) {
+            let node = self.graph.node(at);
+            if let Node::Transform { placement: inner, .. } = node {
+                placement = placement.after(inner);
+            }
+            at = children(node)[0];
+        }
+        frame(&placement).ok_or(ScadError::Flattened { shape: id })
+    }
+
+    /// A profile as a figure in xy after `placement`, which takes its plane there.
+    pub(super) fn figure(
+        &mut self,
+        id: ShapeId,
+        placement: &Placement,
+        depth: usize,
+    ) -> Result<(), ScadError> {
+        if self.is_flat(id) {
+            let depth = depth + self.place(&within(placement), depth);
+            return self.shape(id, depth);
+        }
+        match self.graph.node(id).clone() {
+            Node::Transform { placement: inner, child } => {
+                self.figure(child, &placement.after(&inner), depth)
+            }
+            Node::OffsetProfile { profile, .. } | Node::RoundProfile { profile, .. } => {
+                let frame = self.frame_of(profile)?;
+                let depth = depth + self.place(&within(&placement.after(&frame)), depth);
+                let words = self.offsets(id);
+                let deeper = self.prefixes(&words, depth);
+                self.figure(profile, &inverse(&frame), deeper)
+            }
+            node => {
+                self.open(&node, depth);
+                for &child in children(&node) {
+                    self.figure(child, placement, depth + 1)?;
+                }
+                self.line(depth, "}");
+                Ok(())
+            }
+        }
+    }
+}

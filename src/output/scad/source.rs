@@ -1,0 +1,238 @@
+//! Nodes as OpenSCAD statements.
+
+use glam::{DVec2, DVec3};
+
+use super::{ScadError, Writer, children, facets, plane, points};
+use crate::{
+    geom::{Placement, Region, mesh::Color},
+    output::number::Shortest,
+    shape::{Node, ShapeId},
+};
+
+/// What stands for nothing: a union of no children.
+const NOTHING: &str = "union() {}";
+
+impl Writer<'_> {
+    /// A shape as statements at a depth.
+    pub(super) fn shape(&mut self, id: ShapeId, depth: usize) -> Result<(), ScadError> {
+        if let Some(name) = self.modules.get(&id) {
+            let call = format!("{name}();");
+            self.line(depth, &call);
+            return Ok(());
+        }
+        let node = self.graph.node(id).clone();
+        match &node {
+            Node::Extrude { profile, height, twist, scale } => {
+                let words = self.extrusion(*profile, *height, *twist, *scale)?;
+                let frame = self.frame_of(*profile)?;
+                let depth = depth + self.place(&frame, depth);
+                self.line(depth, &words);
+                self.figure(*profile, &plane::inverse(&frame), depth + 1)
+            }
+            Node::Revolve { profile, angle, sides } => {
+                let frame = self.frame_of(*profile)?;
+                let words = self.revolution(*profile, *angle, *sides)?;
+                let depth = self.prefixes(&words, depth);
+                self.figure(*profile, &plane::inverse(&frame), depth)
+            }
+            Node::OffsetProfile { profile, .. } | Node::RoundProfile { profile, .. } => {
+                let words = self.offsets(id);
+                let depth = self.prefixes(&words, depth);
+                self.shape(*profile, depth)
+            }
+            Node::Transform { placement, child } => {
+                let depth = depth + self.place(placement, depth);
+                self.shape(*child, depth)
+            }
+            node if children(node).is_empty() => {
+                let leaf = self.leaf(id)?;
+                self.line(depth, &leaf);
+                Ok(())
+            }
+            node => {
+                self.open(node, depth);
+                for &child in children(node) {
+                    self.shape(child, depth + 1)?;
+                }
+                self.line(depth, "}");
+                Ok(())
+            }
+        }
+    }
+
+    /// The start of a block of shapes.
+    pub(super) fn open(&mut self, node: &Node, depth: usize) {
+        let word = match node {
+            Node::Difference(_) => "difference()".to_string(),
+            Node::Intersection(_) => "intersection()".to_string(),
+            Node::Hull(_) => "hull()".to_string(),
+            Node::Paint { color, .. } => paint(*color),
+            _ => "union()".to_string(),
+        };
+        self.line(depth, &format!("{word} {{"));
+    }
+
+    /// One line for each word, each deeper than the one before; returns the depth of what they act on.
+    pub(super) fn prefixes(&mut self, words: &[String], depth: usize) -> usize {
+        for (i, word) in words.iter().enumerate() {
+            self.line(depth + i, word);
+        }
+        depth + words.len()
+    }
+
+    /// A placement before what it moves; returns the number of lines, 0 for the identity.
+    pub(super) fn place(&mut self, placement: &Placement, depth: usize) -> usize {
+        if placement.is_identity() {
+            return 0;
+        }
+        let (m, t) = (placement.linear(), placement.offset());
+        let word = if *placement == Placement::translation(t) {
+            format!("translate({})", points::triple(t))
+        } else {
+            let number = |i: usize, j: usize| Shortest(if j < 3 { m.col(j)[i] } else { t[i] });
+            let rows = (0..3).map(|i| points::list((0..4).map(|j| number(i, j))));
+            format!("multmatrix({})", points::list(rows.chain(["[0, 0, 0, 1]".to_string()])))
+        };
+        self.line(depth, &word);
+        1
+    }
+
+    /// `offset` in the words of OpenSCAD, outermost first.
+    pub(super) fn offsets(&self, id: ShapeId) -> Vec<String> {
+        let (steps, radius) = match *self.graph.node(id) {
+            Node::OffsetProfile { d, .. } => (vec![d], d.abs()),
+            // Opening rounds convex corners, closing concave ones; the two middle steps are one.
+            Node::RoundProfile { r, .. } => (vec![-r, 2.0 * r, -r], r),
+            _ => (vec![], 1.0),
+        };
+        let sides = facets::circle(radius, self.tolerance);
+        steps.iter().map(|&r| format!("offset(r = {}, $fn = {sides})", Shortest(r))).collect()
+    }
+
+    fn region(&self, shape: ShapeId, what: &'static str) -> Result<Region, ScadError> {
+        self.realized.region(shape).ok_or(ScadError::Unrealized { shape, what })
+    }
+
+    fn circle_sides(&self, radius: f64, sides: Option<u32>) -> u32 {
+        sides.unwrap_or_else(|| facets::circle(radius, self.tolerance))
+    }
+
+    fn extrusion(
+        &self,
+        profile: ShapeId,
+        height: f64,
+        twist: f64,
+        scale: DVec2,
+    ) -> Result<String, ScadError> {
+        let mut words = format!("linear_extrude(height = {}", Shortest(height));
+        if twist != 0.0 {
+            let corners = self.region(profile, "twisted profile")?;
+            let reach = corners.contours().flat_map(|c| &c.points).map(|p| p.length());
+            let edges = corners.contours().flat_map(|c| edge_lengths(&c.points));
+            let (reach, edge) = (reach.fold(0.0, f64::max), edges.fold(0.0, f64::max));
+            let slices = facets::twist_slices(reach, edge, twist, self.tolerance);
+            words += &format!(", twist = {}, slices = {slices}", Shortest(-twist));
+        }
+        if scale != DVec2::ONE {
+            words += &format!(", scale = {}", points::pair(scale));
+        }
+        Ok(words + ", convexity = 10)")
+    }
+
+    fn revolution(
+        &self,
+        profile: ShapeId,
+        angle: f64,
+        sides: Option<u32>,
+    ) -> Result<Vec<String>, ScadError> {
+        let full = match sides {
+            Some(sides) => sides,
+            None => {
+                let corners = self.region(profile, "revolved profile")?;
+                let reach = corners.contours().flat_map(|c| &c.points).map(|p| p.x.abs());
+                facets::circle(reach.fold(0.0, f64::max), self.tolerance)
+            }
+        };
+        if angle.abs() == 360.0 {
+            // A full turn starts at -x in OpenSCAD.
+            let turn = "rotate([0, 0, 180])".to_string();
+            return Ok(vec![turn, format!("rotate_extrude($fn = {full}, convexity = 10)")]);
+        }
+        Ok(vec![format!(
+            "rotate_extrude(angle = {}, $fn = {full}, convexity = 10)",
+            Shortest(angle)
+        )])
+    }
+
+    fn leaf(&self, id: ShapeId) -> Result<String, ScadError> {
+        Ok(match self.graph.node(id) {
+            Node::Box { min, max } => cuboid(*min, *max),
+            Node::Cone { r1, r2, h, sides } => self.cone(*r1, *r2, *h, *sides),
+            Node::Sphere { r, sides } => {
+                let sides = sides.unwrap_or_else(|| facets::sphere(*r, self.tolerance));
+                format!("sphere(r = {}, $fn = {sides});", Shortest(*r))
+            }
+            Node::Torus { major, minor, sides } => self.torus(*major, *minor, *sides),
+            Node::Polyhedron { points: corners, faces } => {
+                points::polyhedron(corners, faces.iter().map(|face| &**face))
+            }
+            Node::Rect { size } => format!("square({}, center = true);", points::pair(*size)),
+            Node::Ellipse { radii, sides } => self.ellipse(*radii, *sides),
+            Node::Polygon { points: outer, holes } => {
+                points::polygon(std::iter::once(&**outer).chain(holes.iter().map(|h| &**h)))
+            }
+            Node::ImportSolid { .. } => {
+                let mesh = self.realized.mesh(id);
+                points::mesh(&mesh.ok_or(ScadError::Unrealized { shape: id, what: "import" })?)
+            }
+            Node::Text(_) => points::region(&self.region(id, "text")?),
+            Node::ImportProfile { .. } => points::region(&self.region(id, "import")?),
+            _ => NOTHING.to_string(),
+        })
+    }
+
+    fn cone(&self, r1: f64, r2: f64, h: f64, sides: Option<u32>) -> String {
+        let sides = self.circle_sides(r1.max(r2), sides);
+        let radii = if r1 == r2 {
+            format!("r = {}", Shortest(r1))
+        } else {
+            format!("r1 = {}, r2 = {}", Shortest(r1), Shortest(r2))
+        };
+        format!("cylinder(h = {}, {radii}, $fn = {sides});", Shortest(h))
+    }
+
+    fn torus(&self, major: f64, minor: f64, sides: Option<u32>) -> String {
+        let (long, short) =
+            (self.circle_sides(major + minor, sides), self.circle_sides(minor, sides));
+        format!(
+            "rotate([0, 0, 180]) rotate_extrude($fn = {long}, convexity = 10) \
+             translate([{}, 0]) circle(r = {}, $fn = {short});",
+            Shortest(major),
+            Shortest(minor)
+        )
+    }
+
+    fn ellipse(&self, radii: DVec2, sides: Option<u32>) -> String {
+        let sides = self.circle_sides(radii.max_element(), sides);
+        if radii.x == radii.y {
+            format!("circle(r = {}, $fn = {sides});", Shortest(radii.x))
+        } else {
+            format!("scale({}) circle(r = 1, $fn = {sides});", points::pair(radii))
+        }
+    }
+}
+
+fn edge_lengths(corners: &[DVec2]) -> impl Iterator<Item = f64> {
+    let next = corners.iter().cycle().skip(1);
+    corners.iter().zip(next).map(|(a, b)| a.distance(*b))
+}
+
+fn cuboid(min: DVec3, max: DVec3) -> String {
+    let cube = format!("cube({});", points::triple(max - min));
+    if min == DVec3::ZERO { cube } else { format!("translate({}) {cube}", points::triple(min)) }
+}
+
+fn paint(Color { r, g, b }: Color) -> String {
+    let parts = [r, g, b].map(|c| Shortest(f64::from(c) / 255.0));
+    format!("color({})", points::list(parts))
+}
