@@ -4,6 +4,7 @@ pub mod mesh;
 pub mod orient;
 pub mod placement;
 pub mod region;
+pub mod sum;
 pub mod surface;
 pub mod tolerance;
 pub mod triangulate;
