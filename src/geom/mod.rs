@@ -1,7 +1,10 @@
 //! What all kernels share: numbers, placements, surfaces and meshes. It knows no language and no kernel.
 
+pub mod flatten;
 pub mod mesh;
 pub mod orient;
+pub mod outline;
+pub mod overlay;
 pub mod placement;
 pub mod region;
 pub mod sum;
@@ -12,6 +15,6 @@ pub mod trig;
 
 pub use mesh::{FaceRef, Origin, PolyMesh};
 pub use placement::Placement;
-pub use region::{Contour, Region};
+pub use region::{Contour, EdgeCurve, Piece, Region};
 pub use surface::Surface;
 pub use tolerance::Tolerance;

@@ -1,3 +1,4 @@
 //! The kernels: siblings that do not know each other.
 
 pub mod brep;
+pub mod profile;

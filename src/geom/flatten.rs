@@ -1,0 +1,85 @@
+//! Curves of a plane drawn as chords: how many, and where.
+//!
+//! The chord error is the distance between a chord and the arc it stands for. For a circle of radius r
+//! and an arc of angle a it is r (1 - cos(a / 2)); for a Bezier curve it is at most h^2 M / 8, where h is
+//! the step of the parameter and M the largest second derivative.
+
+use glam::DVec2;
+
+use super::Tolerance;
+
+/// The most chords one curve is drawn with, whatever the tolerance says.
+pub const MOST_CHORDS: u32 = 1 << 16;
+
+/// The number of chords a full circle of radius `radius` (mm) needs: a multiple of 4, so that the
+/// four extreme points are corners, and at least 8.
+///
+/// ```
+/// use katachi::geom::{Tolerance, flatten::circle_chords};
+/// assert_eq!(circle_chords(10.0, Tolerance::DEFAULT), 32);
+/// ```
+pub fn circle_chords(radius: f64, tolerance: Tolerance) -> u32 {
+    let cosine = 1.0 - tolerance.mm() / radius.abs();
+    let half = if cosine > 0.0 { libm::acos(cosine) } else { std::f64::consts::FRAC_PI_2 };
+    let least = (std::f64::consts::PI / half).ceil().clamp(8.0, f64::from(MOST_CHORDS));
+    (least as u32).next_multiple_of(4)
+}
+
+/// The number of chords an arc of `radius` (mm) over `angle` (radians, any sign) needs; at least 1.
+pub fn arc_chords(radius: f64, angle: f64, tolerance: Tolerance) -> u32 {
+    let whole = f64::from(circle_chords(radius, tolerance));
+    // A turn divided evenly must not cost one chord more for the rounding of the angle.
+    const SLACK: f64 = 1e-9;
+    (whole * angle.abs() / std::f64::consts::TAU - SLACK).ceil().max(1.0) as u32
+}
+
+/// The corners of a chain of chords along a quadratic Bezier curve, its first point left out.
+pub fn quadratic(p: [DVec2; 3], tolerance: Tolerance) -> impl Iterator<Item = DVec2> {
+    let bend = 2.0 * (p[0] - 2.0 * p[1] + p[2]).length();
+    along(bend, tolerance, p[2], move |t| p[0].lerp(p[1], t).lerp(p[1].lerp(p[2], t), t))
+}
+
+/// The corners of a chain of chords along a cubic Bezier curve, its first point left out.
+pub fn cubic(p: [DVec2; 4], tolerance: Tolerance) -> impl Iterator<Item = DVec2> {
+    let bends = [p[0] - 2.0 * p[1] + p[2], p[1] - 2.0 * p[2] + p[3]];
+    let bend = 6.0 * bends[0].length().max(bends[1].length());
+    along(bend, tolerance, p[3], move |t| {
+        let (a, b, c) = (p[0].lerp(p[1], t), p[1].lerp(p[2], t), p[2].lerp(p[3], t));
+        a.lerp(b, t).lerp(b.lerp(c, t), t)
+    })
+}
+
+fn along(
+    bend: f64,
+    tolerance: Tolerance,
+    end: DVec2,
+    at: impl Fn(f64) -> DVec2,
+) -> impl Iterator<Item = DVec2> {
+    let chords = libm::sqrt(bend / (8.0 * tolerance.mm())).ceil();
+    let chords = chords.clamp(1.0, f64::from(MOST_CHORDS)) as u32;
+    (1..=chords).map(move |i| if i == chords { end } else { at(f64::from(i) / f64::from(chords)) })
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::dvec2;
+
+    use super::*;
+
+    #[test]
+    fn chords_stay_within_the_tolerance() {
+        for radius in [0.01, 1.0, 10.0, 1000.0] {
+            let n = f64::from(circle_chords(radius, Tolerance::DEFAULT));
+            let sagitta = radius * (1.0 - libm::cos(std::f64::consts::PI / n));
+            assert!(sagitta <= 0.05, "{radius} {n}");
+        }
+    }
+
+    #[test]
+    fn a_cubic_ends_where_it_ends() {
+        let p = [dvec2(0., 0.), dvec2(0., 5.), dvec2(5., 10.), dvec2(10., 10.)];
+        let points: Vec<_> = cubic(p, Tolerance::DEFAULT).collect();
+        assert_eq!(points.last(), Some(&p[3]));
+        assert!(points.len() > 5 && points.len() < 20);
+    }
+}
