@@ -1,9 +1,11 @@
 //! What all kernels share: numbers, placements, surfaces and meshes. It knows no language and no kernel.
 
 pub mod mesh;
+pub mod nearest;
 pub mod orient;
 pub mod placement;
 pub mod region;
+pub mod spherical_projection;
 pub mod sum;
 pub mod surface;
 pub mod tolerance;
