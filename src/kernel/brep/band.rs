@@ -20,18 +20,29 @@ pub(super) fn add_point(mesh: &mut PolyMesh, p: DVec3) -> u32 {
     mesh.points.len() as u32 - 1
 }
 
-/// Adds the facets between two rings, each in a plane of its own: the outside is to the right of one
-/// who goes from `lower` to `upper` with the axis on the left. A ring of one point makes triangles; two
-/// such make nothing.
+/// Adds the facets between two closed rings, each in a plane of its own: the outside is to the right of
+/// one who goes from `lower` to `upper` with the axis on the left. A ring of one point makes triangles;
+/// two such make nothing.
 pub(super) fn add_band(mesh: &mut PolyMesh, lower: &[u32], upper: &[u32], origin: u32) {
     let sides = lower.len().max(upper.len());
+    add_strip(mesh, lower, upper, if sides > 1 { sides } else { 0 }, origin);
+}
+
+/// The same for the first `count` facets only: rings of `count` + 1 points that are not closed.
+pub(super) fn add_strip(
+    mesh: &mut PolyMesh,
+    lower: &[u32],
+    upper: &[u32],
+    count: usize,
+    origin: u32,
+) {
     let at = |ring: &[u32], i: usize| ring[i % ring.len()];
-    for i in 0..if sides > 1 { sides } else { 0 } {
+    for i in 0..count {
         let corners = [at(lower, i), at(lower, i + 1), at(upper, i + 1), at(upper, i)];
         let plane = mesh.add_plane();
         match (lower.len(), upper.len()) {
             (_, 1) => mesh.push_face(&[&corners[..3]], plane, origin),
-            (1, _) => mesh.push_face(&[&corners[1..]], plane, origin),
+            (1, _) => mesh.push_face(&[&[corners[0], corners[2], corners[3]]], plane, origin),
             _ => mesh.push_face(&[&corners[..]], plane, origin),
         }
     }
