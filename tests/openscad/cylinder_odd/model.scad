@@ -1,0 +1,1 @@
+cylinder(r = 8, h = 12, $fn = 7);
