@@ -2,9 +2,11 @@
 
 pub mod mesh;
 pub mod placement;
+pub mod predicates;
 pub mod region;
 pub mod surface;
 pub mod tolerance;
+pub mod wide;
 
 pub use mesh::{FaceRef, Origin, PolyMesh};
 pub use placement::Placement;
