@@ -9,6 +9,7 @@ pub mod orient;
 pub mod outline;
 pub mod overlay;
 pub mod placement;
+pub mod predicates;
 pub mod region;
 pub mod spherical_projection;
 pub mod sum;
@@ -16,6 +17,7 @@ pub mod surface;
 pub mod tolerance;
 pub mod triangulate;
 pub mod trig;
+pub mod wide;
 
 pub use bounds::Bounds;
 pub use mesh::{FaceRef, Origin, PolyMesh};

@@ -3,3 +3,4 @@
 mod floors;
 mod scad;
 mod sources;
+mod laws;

@@ -4,6 +4,7 @@ mod band;
 pub mod extrude;
 mod flank;
 pub mod measure;
+pub mod boolean;
 pub mod polyhedron;
 pub mod primitive;
 pub mod revolve;

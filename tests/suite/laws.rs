@@ -1,0 +1,4 @@
+//! Laws and hard cases of the set operations.
+
+mod cases;
+mod solids;
