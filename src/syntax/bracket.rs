@@ -21,8 +21,12 @@ struct Balance<'s> {
     source: SourceId,
     text: &'s str,
     tokens: Tokens,
-    /// Indices of the open brackets.
-    open: Vec<usize>,
+    /// The open brackets.
+    open: Vec<Opener>,
+    /// Index of the first token of the line.
+    line: usize,
+    /// The line of an opener, the limit, and the place last found for them.
+    last_place: Option<(usize, usize, usize)>,
     /// How many of them are of each kind.
     counts: [usize; 4],
     /// Tokens to leave out.
@@ -31,6 +35,13 @@ struct Balance<'s> {
     inserted: Vec<(usize, Token)>,
     semicolons: Vec<usize>,
     diagnostics: Vec<Diagnostic>,
+}
+
+/// An open bracket and the first token of its line, by index.
+#[derive(Clone, Copy)]
+struct Opener {
+    at: usize,
+    line: usize,
 }
 
 fn closer_of(opener: Token) -> Token {
@@ -55,25 +66,27 @@ impl Balance<'_> {
     fn take(&mut self, index: usize) {
         let token = self.tokens.kinds[index];
         if TokenSet::OPENERS.has(token) {
-            self.open.push(index);
+            self.open.push(Opener { at: index, line: self.line });
             self.counts[kind_of(closer_of(token))] += 1;
         } else if TokenSet::CLOSERS.has(token) {
             self.close(index, token);
         } else if token == Token::Semicolon {
             self.semicolon(index);
+        } else if token == Token::Newline {
+            self.line = index + 1;
         }
     }
 
     fn close(&mut self, index: usize, closer: Token) {
         if self.counts[kind_of(closer)] > 0 {
-            let matches = |&at: &usize| closer_of(self.tokens.kinds[at]) == closer;
+            let matches = |open: &Opener| closer_of(self.tokens.kinds[open.at]) == closer;
             let depth = self.open.iter().rposition(matches).unwrap_or(0);
             self.close_all(index, depth + 1);
             self.pop(index);
         } else if let Some(&opener) = self.open.last()
-            && !self.line_between(opener, index)
+            && opener.line == self.line
         {
-            self.swap(opener, index, closer);
+            self.swap(opener.at, index, closer);
         } else {
             self.dropped.push(index);
             let span = self.span(index);
@@ -89,7 +102,7 @@ impl Balance<'_> {
 
     /// Takes the innermost open bracket as closed by the token at `index`.
     fn pop(&mut self, index: usize) {
-        let Some(opener) = self.open.pop() else { return };
+        let Some(Opener { at: opener, .. }) = self.open.pop() else { return };
         let kind = self.tokens.kinds[opener];
         self.counts[kind_of(closer_of(kind))] -= 1;
         let arrow = self.tokens.get(index + 1) == Some(Token::FatArrow);
@@ -120,11 +133,11 @@ impl Balance<'_> {
         while self.open.len() > keep {
             let Some(&opener) = self.open.last() else { return };
             let at = self.place_of_missing(opener, index);
-            let closer = closer_of(self.tokens.kinds[opener]);
+            let closer = closer_of(self.tokens.kinds[opener.at]);
             self.inserted.push((at, closer));
             self.pop(at);
             if reported != Some(at) {
-                self.report_missing(opener, closer, at);
+                self.report_missing(opener.at, closer, at);
             }
             reported = Some(at);
         }
@@ -132,28 +145,33 @@ impl Balance<'_> {
 
     /// Where the missing partner of a bracket belongs: at the first line end behind which the text
     /// is indented no deeper than the line that opened it, at the latest before `limit`.
-    fn place_of_missing(&self, opener: usize, limit: usize) -> usize {
-        let indent = self.indent(opener);
-        let line_ends = (opener + 1..limit).filter(|&i| self.tokens.kinds[i] == Token::Newline);
-        let mut outside = line_ends.filter(|&i| {
+    fn place_of_missing(&mut self, opener: Opener, limit: usize) -> usize {
+        if let Some((line, bound, place)) = self.last_place
+            && (line, bound) == (opener.line, limit)
+            && place > opener.at
+        {
+            return place;
+        }
+        let indent = self.indent(opener.line);
+        let mut line_ends =
+            (opener.at + 1..limit).filter(|&i| self.tokens.kinds[i] == Token::Newline);
+        let outside = line_ends.find(|&i| {
             let next = self.tokens.get(i + 1);
             i + 1 < limit
                 && self.indent(i + 1) <= indent
                 && next.is_some_and(|t| !TokenSet::CLOSERS.has(t) && t != Token::Dot)
         });
-        outside.next().unwrap_or(limit)
+        let place = outside.unwrap_or(limit);
+        self.last_place = Some((opener.line, limit, place));
+        place
     }
 
-    /// Bytes of white space at the start of the line of a token.
+    /// Bytes of white space before the first token of a line.
     fn indent(&self, index: usize) -> usize {
         let before = &self.text[..self.tokens.spans[index].0 as usize];
         let start = before.rfind(['\n', '\r']).map_or(0, |i| i + 1);
         let line = &self.text[start..];
         line.len() - line.trim_start_matches([' ', '\t']).len()
-    }
-
-    fn line_between(&self, from: usize, to: usize) -> bool {
-        self.tokens.kinds[from..to].contains(&Token::Newline)
     }
 
     fn report_missing(&mut self, opener: usize, closer: Token, at: usize) {
@@ -171,7 +189,7 @@ impl Balance<'_> {
     /// At a line end `;` is dropped, between statements it stands for a line end, in parentheses it
     /// is left to the parser.
     fn semicolon(&mut self, index: usize) {
-        let inside = self.open.last().map(|&at| self.tokens.kinds[at]);
+        let inside = self.open.last().map(|open| self.tokens.kinds[open.at]);
         if inside.is_some_and(|kind| kind != Token::LBrace) {
             return;
         }
