@@ -1,6 +1,7 @@
 #![doc = "Katachi (形): a small declarative language for solid modelling."]
 
 pub mod base;
+pub mod eval;
 pub mod geom;
 pub mod kernel;
 pub mod shape;
