@@ -2,6 +2,7 @@
 
 pub mod app;
 pub mod base;
+pub mod eval;
 pub mod geom;
 pub mod kernel;
 pub mod output;
