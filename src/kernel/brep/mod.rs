@@ -1,7 +1,9 @@
 //! Exact polyhedra: boundary representation by planar polygons.
 
 mod band;
+mod closing;
 pub mod extrude;
+pub mod faces;
 mod flank;
 pub mod measure;
 pub mod boolean;
