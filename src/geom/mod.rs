@@ -5,6 +5,7 @@ pub mod bvh;
 pub mod mesh;
 pub mod nearest;
 pub mod orient;
+pub mod parity;
 pub mod placement;
 pub mod region;
 pub mod spherical_projection;
