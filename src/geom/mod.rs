@@ -8,6 +8,7 @@ pub mod nearest;
 pub mod orient;
 pub mod outline;
 pub mod overlay;
+pub mod parity;
 pub mod placement;
 pub mod predicates;
 pub mod region;

@@ -2,9 +2,11 @@
 
 mod band;
 mod closing;
+pub mod distance;
 pub mod extrude;
 pub mod faces;
 mod flank;
+pub mod hull;
 pub mod measure;
 pub mod boolean;
 pub mod polyhedron;

@@ -5,17 +5,14 @@ use glam::DVec3;
 use super::{Soup, following};
 use crate::geom::{Origin, PolyMesh};
 
-/// How far a corner may be from the plane of the triangle that a face grows from, relative to the largest
-/// coordinate: one unit in the last place of the single-precision numbers that STL files hold. Points of
-/// higher precision are held to the same measure, far below what a maker can mean.
-const FLATNESS: f64 = 1.0 / (1 << 23) as f64;
 /// A triangle whose height is this many times the flatness has a plane good enough to grow a face from.
 const FIRM: f64 = 64.0;
 
 const NONE: u32 = u32::MAX;
 
-/// The mesh of maximal faces: each one plane, one origin, one polygon with holes.
-pub(super) fn merge(soup: &Soup, twin: &[u32], origins: &[Origin]) -> PolyMesh {
+/// The mesh of maximal faces: each one plane, one origin, one polygon with holes. A corner may be off the
+/// plane of the triangle that its face grows from by `flatness` times the largest coordinate.
+pub(super) fn merge(soup: &Soup, twin: &[u32], origins: &[Origin], flatness: f64) -> PolyMesh {
     let mut merging = Merging {
         soup,
         twin,
@@ -27,7 +24,7 @@ pub(super) fn merge(soup: &Soup, twin: &[u32], origins: &[Origin]) -> PolyMesh {
         merging.mesh.add_origin(o.clone());
     });
     let reach = soup.points.iter().fold(DVec3::ZERO, |m, p| m.max(p.abs())).max_element();
-    let flatness = FLATNESS * reach;
+    let flatness = flatness * reach;
     for least_height in [FIRM * flatness, -1.0] {
         for seed in 0..soup.triangles.len() {
             if merging.region_of[seed] == NONE && height(soup.corners(seed)) > least_height {

@@ -11,7 +11,15 @@ mod twins;
 use glam::DVec3;
 
 use super::{Defect, Polyhedron};
-use crate::geom::{PolyMesh, triangulate::triangulate};
+use crate::geom::{Origin, PolyMesh, triangulate::triangulate};
+
+/// Flatness of faces from files, relative to the largest coordinate: one unit in the last place of the
+/// single-precision numbers that STL files hold. Points of higher precision are held to the same measure,
+/// far below what a maker can mean.
+const SINGLE_PRECISION: f64 = 1.0 / (1 << 23) as f64;
+/// Flatness of faces computed here: some units in the last place of double precision, what moving a flat
+/// face into place costs.
+const DOUBLE_PRECISION: f64 = 32.0 * f64::EPSILON;
 
 /// Triangles over shared points; each remembers the face it is part of.
 struct Soup {
@@ -30,7 +38,16 @@ pub(super) fn close(mesh: &PolyMesh) -> Result<Polyhedron, Defect> {
     let mut twin = twins::pair(&mut soup)?;
     twins::split_fans(&mut soup, &twin);
     shells::turn_outwards(&mut soup, &mut twin);
-    Ok(Polyhedron::trusted(coplanar::merge(&soup, &twin, mesh.origins())))
+    Ok(Polyhedron::trusted(coplanar::merge(&soup, &twin, mesh.origins(), SINGLE_PRECISION)))
+}
+
+/// The faces of triangles that are closed, manifold and turned outwards already.
+pub(super) fn merged(points: Vec<DVec3>, triangles: Vec<[u32; 3]>, origin: Origin) -> PolyMesh {
+    let mut soup = Soup { points, origin: vec![0; triangles.len()], triangles };
+    match twins::pair(&mut soup) {
+        Ok(twin) => coplanar::merge(&soup, &twin, &[origin], DOUBLE_PRECISION),
+        Err(defect) => unreachable!("closed triangles have neighbours: {defect}"),
+    }
 }
 
 impl Soup {

@@ -2,15 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use super::{Soup, twins};
-use crate::geom::{
-    Bounds,
-    bvh::Bvh,
-    orient::{orient2d, orient3d},
-    sum::Sum,
-};
+use crate::geom::{Bounds, bvh::Bvh, parity::is_below, sum::Sum};
 
 const NONE: u32 = u32::MAX;
 
@@ -121,27 +116,5 @@ impl<'a> Nesting<'a> {
             odd ^= is_below(p, self.soup.corners(t as usize));
         });
         odd
-    }
-}
-
-/// Whether a triangle lies straight above a point. On its outline the point counts as moved by a little in
-/// x and much less in y, so that of the triangles around a corner the right number is met.
-fn is_below(p: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
-    let side = |u: DVec3, v: DVec3| left_of(u.truncate(), v.truncate(), p.truncate());
-    let turns = [side(a, b), side(b, c), side(c, a)];
-    let up = turns == [true; 3];
-    let down = turns == [false; 3];
-    let height = orient3d(a, b, c, p);
-    (up && height > 0.0) || (down && height < 0.0)
-}
-
-fn left_of(a: DVec2, b: DVec2, p: DVec2) -> bool {
-    let turn = orient2d(a, b, p);
-    if turn != 0.0 {
-        turn > 0.0
-    } else if a.y != b.y {
-        a.y > b.y
-    } else {
-        b.x > a.x
     }
 }
