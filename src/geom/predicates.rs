@@ -89,10 +89,8 @@ impl Meet {
         let (bc, ca, ab) =
             (cross(b.normal, c.normal), cross(c.normal, a.normal), cross(a.normal, b.normal));
         let wide = |v: i128| Wide::<4>::from(v);
-        let mut w = Wide::ZERO;
-        for axis in 0..3 {
-            w = w + wide(i128::from(a.normal[axis])) * wide(bc[axis]);
-        }
+        let w = (0..3)
+            .fold(Wide::ZERO, |sum, axis| sum + wide(i128::from(a.normal[axis])) * wide(bc[axis]));
         let x = std::array::from_fn(|axis| {
             wide(a.offset) * wide(bc[axis])
                 + wide(b.offset) * wide(ca[axis])

@@ -61,11 +61,7 @@ fn shifted(random: &mut Random, style: &Style, tree: Tree) -> Tree {
 }
 
 fn coordinate(random: &mut Random, style: &Style, reach: f64) -> f64 {
-    if style.coarse {
-        random.below(reach as u64 + 1) as f64
-    } else {
-        random.unit() * reach
-    }
+    if style.coarse { random.below(reach as u64 + 1) as f64 } else { random.unit() * reach }
 }
 
 fn placed(random: &mut Random, style: &Style) -> Tree {

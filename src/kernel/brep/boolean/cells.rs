@@ -177,7 +177,7 @@ impl Complex {
     pub fn spoke(&self, half: u32, facets: &mut Facets, space: &mut Space) -> Spoke {
         let (plane, turned) = self.normal(self.halves[half as usize].cell, facets, space);
         let normal = space.plane(plane).normal;
-        let against = turned != !self.is_forward(half);
+        let against = turned == self.is_forward(half);
         Spoke { half, normal: if against { normal.map(|c| -c) } else { normal } }
     }
 }
