@@ -4,15 +4,29 @@
 use super::token::{Token, TokenSet, Tokens};
 use crate::base::{Code, Diagnostic, SourceId, Span};
 
+/// Tokens with paired brackets, and what had to be said.
+pub struct Balanced {
+    /// The tokens.
+    pub tokens: Tokens,
+    /// Missing and needless brackets.
+    pub diagnostics: Vec<Diagnostic>,
+    /// The `;` found, in one message.
+    pub semicolons: Option<Diagnostic>,
+}
+
 /// Pairs the brackets: closing ones that close nothing are dropped, missing ones are put at the end
 /// of the line before the text moves back out. Also tells the `(` of a lambda from other ones, and
 /// takes `;` for a line end.
-pub fn balance(source: SourceId, text: &str, tokens: Tokens) -> (Tokens, Vec<Diagnostic>) {
+pub fn balance(source: SourceId, text: &str, tokens: Tokens) -> Balanced {
+    let kinds = tokens.kinds.clone();
     let mut pass = Balance { source, text, tokens, ..Balance::default() };
-    for index in 0..pass.tokens.len() {
-        pass.take(index);
+    pass.run();
+    if !pass.dropped.is_empty() || !pass.inserted.is_empty() {
+        // A bracket is missing somewhere: now lines that look like statements end what is open.
+        let tokens = Tokens { kinds, ..pass.tokens };
+        pass = Balance { source, text, tokens, strict: true, ..Balance::default() };
+        pass.run();
     }
-    pass.close_all(pass.tokens.len(), 0);
     pass.finish()
 }
 
@@ -21,6 +35,8 @@ struct Balance<'s> {
     source: SourceId,
     text: &'s str,
     tokens: Tokens,
+    /// Whether a line that looks like a statement ends open parentheses.
+    strict: bool,
     /// The open brackets.
     open: Vec<Opener>,
     /// Index of the first token of the line.
@@ -63,6 +79,13 @@ fn kind_of(closer: Token) -> usize {
 }
 
 impl Balance<'_> {
+    fn run(&mut self) {
+        for index in 0..self.tokens.len() {
+            self.take(index);
+        }
+        self.close_all(self.tokens.len(), 0);
+    }
+
     fn take(&mut self, index: usize) {
         let token = self.tokens.kinds[index];
         if TokenSet::OPENERS.has(token) {
@@ -74,7 +97,40 @@ impl Balance<'_> {
             self.semicolon(index);
         } else if token == Token::Newline {
             self.line = index + 1;
+            if self.strict && self.starts_statement(index + 1) {
+                self.end_lists(index);
+            }
         }
+    }
+
+    /// Whether a line begins with `name =`, or with a word that begins an item and a name.
+    fn starts_statement(&self, index: usize) -> bool {
+        const HEADS: TokenSet = TokenSet::NAMES.or(TokenSet::of(&[Token::Fn])).without(PLAIN);
+        const PLAIN: TokenSet = TokenSet::of(&[
+            Token::Name,
+            Token::As,
+            Token::With,
+            Token::Step,
+            Token::When,
+            Token::Fails,
+        ]);
+        let (Some(first), Some(second)) = (self.tokens.get(index), self.tokens.get(index + 1))
+        else {
+            return false;
+        };
+        let named = TokenSet::NAMES.has(second) || second == Token::StringStart;
+        (TokenSet::NAMES.has(first) && second == Token::Assign) || (HEADS.has(first) && named)
+    }
+
+    /// Closes the parentheses and square brackets open at a line end, if the next line is not
+    /// indented deeper than the line that opened them.
+    fn end_lists(&mut self, newline: usize) {
+        let indent = self.indent(newline + 1);
+        let ends = |open: &Opener| {
+            self.tokens.kinds[open.at] != Token::LBrace && indent <= self.indent(open.line)
+        };
+        let keep = self.open.iter().rposition(|open| !ends(open)).map_or(0, |at| at + 1);
+        self.close_all(newline, keep);
     }
 
     fn close(&mut self, index: usize, closer: Token) {
@@ -202,25 +258,30 @@ impl Balance<'_> {
         Span::new(self.source, start, end)
     }
 
-    fn report_semicolons(&mut self) {
-        let Some(&first) = self.semicolons.first() else { return };
-        let span = self.span(first);
-        let mut diagnostic = Diagnostic::error(Code::Syntax, "a statement ends with its line")
+    fn semicolons(&self) -> Option<Diagnostic> {
+        let span = self.span(*self.semicolons.first()?);
+        let diagnostic = Diagnostic::error(Code::Syntax, "a statement ends with its line")
             .label(span, "`;` is not needed")
             .help("remove it; two statements go on two lines")
             .fix(span, "");
         let others = self.semicolons.len() - 1;
-        if others > 0 {
-            diagnostic = diagnostic.note(format!("{others} more of them in this file"));
-        }
-        self.diagnostics.push(diagnostic);
+        Some(match others {
+            0 => diagnostic,
+            _ => diagnostic.note(format!("{others} more of them in this file")),
+        })
     }
 
-    fn finish(mut self) -> (Tokens, Vec<Diagnostic>) {
-        self.report_semicolons();
-        if self.dropped.is_empty() && self.inserted.is_empty() {
-            return (self.tokens, self.diagnostics);
-        }
+    fn finish(mut self) -> Balanced {
+        let semicolons = self.semicolons();
+        let tokens = match self.dropped.is_empty() && self.inserted.is_empty() {
+            true => std::mem::take(&mut self.tokens),
+            false => self.rebuilt(),
+        };
+        Balanced { tokens, diagnostics: self.diagnostics, semicolons }
+    }
+
+    /// The tokens without the dropped and with the inserted brackets.
+    fn rebuilt(&mut self) -> Tokens {
         // Stable: of two closers at one place the inner one was put in first.
         self.inserted.sort_by_key(|(at, _)| *at);
         let mut out = Tokens::with_capacity(self.tokens.len() + self.inserted.len());
@@ -237,6 +298,6 @@ impl Balance<'_> {
                 out.push(self.tokens.kinds[index], self.tokens.spans[index]);
             }
         }
-        (out, self.diagnostics)
+        out
     }
 }

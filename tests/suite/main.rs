@@ -5,3 +5,4 @@ mod floors;
 mod scad;
 mod sources;
 mod laws;
+mod grammar;

@@ -4,6 +4,7 @@
 mod atom;
 mod expr;
 mod fault;
+mod habit;
 mod hint;
 mod item;
 mod operator;
@@ -57,9 +58,9 @@ fn read(source: SourceId, text: &str) -> (Program, Vec<Diagnostic>, Productions)
     let lexed = lexer::lex(source, text);
     let doc = state::file_doc(text, &lexed);
     let Lexed { tokens, mut diagnostics, .. } = lexed;
-    let (tokens, unbalanced) = bracket::balance(source, text, tokens);
-    diagnostics.extend(unbalanced);
-    let tokens = depth::limit(source, tokens, &mut diagnostics);
+    let balanced = bracket::balance(source, text, tokens);
+    diagnostics.extend(balanced.diagnostics);
+    let tokens = depth::limit(source, balanced.tokens, &mut diagnostics);
     let tokens = newline::newlines(text, &tokens);
     let mut state = State::new(source, text, &tokens);
     let (items, faults) =
@@ -68,6 +69,7 @@ fn read(source: SourceId, text: &str) -> (Program, Vec<Diagnostic>, Productions)
     diagnostics.sort_by_key(start);
     diagnostics.truncate(MAX_DIAGNOSTICS);
     let known: Vec<Span> = diagnostics.iter().filter_map(Diagnostic::span).collect();
+    diagnostics.extend(balanced.semicolons);
     diagnostics.extend(messages(source, text, &tokens, &faults, &known));
     diagnostics.sort_by_key(start);
     diagnostics.truncate(MAX_DIAGNOSTICS);
