@@ -2,6 +2,7 @@
 
 pub mod base;
 pub mod geom;
+pub mod input;
 pub mod kernel;
 pub mod shape;
 pub mod syntax;
