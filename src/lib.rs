@@ -4,6 +4,7 @@ pub mod app;
 pub mod base;
 pub mod eval;
 pub mod geom;
+pub mod input;
 pub mod kernel;
 pub mod output;
 pub mod realize;

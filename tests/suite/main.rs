@@ -6,3 +6,4 @@ mod scad;
 mod sources;
 mod laws;
 mod grammar;
+mod readers;
