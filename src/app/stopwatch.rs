@@ -27,7 +27,7 @@ pub struct Stopwatch {
     started: Instant,
     laps: Mutex<Laps>,
     steps: Arc<Steps>,
-    bar: Option<JoinHandle<()>>,
+    bar: Mutex<Option<JoinHandle<()>>>,
 }
 
 #[derive(Debug)]
@@ -58,14 +58,14 @@ impl Stopwatch {
             let steps = steps.clone();
             thread::spawn(move || steps.draw())
         });
-        Stopwatch { started, laps: Mutex::new(laps), steps, bar }
+        Stopwatch { started, laps: Mutex::new(laps), steps, bar: Mutex::new(bar) }
     }
 
     /// Takes the bar away; what is printed after this stands on clean lines.
-    pub fn end_bar(&mut self) {
+    pub fn end_bar(&self) {
         *hold(&self.steps.over) = true;
         self.steps.bell.notify_all();
-        if let Some(bar) = self.bar.take() {
+        if let Some(bar) = hold(&self.bar).take() {
             let _ = bar.join();
         }
     }

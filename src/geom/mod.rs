@@ -1,8 +1,8 @@
 //! What all kernels share: numbers, placements, surfaces and meshes. It knows no language and no kernel.
 
-pub mod flatten;
 pub mod bounds;
 pub mod bvh;
+pub mod flatten;
 pub mod mesh;
 pub mod nearest;
 pub mod orient;

@@ -1,6 +1,7 @@
 //! Exact polyhedra: boundary representation by planar polygons.
 
 mod band;
+pub mod boolean;
 mod closing;
 pub mod distance;
 pub mod extrude;
@@ -8,7 +9,6 @@ pub mod faces;
 mod flank;
 pub mod hull;
 pub mod measure;
-pub mod boolean;
 pub mod polyhedron;
 pub mod primitive;
 pub mod revolve;
