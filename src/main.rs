@@ -1,3 +1,7 @@
 //! The `katachi` command.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    katachi::app::cli::run()
+}

@@ -76,6 +76,13 @@ impl PolyMesh {
         PolyMesh { points, ..PolyMesh::default() }
     }
 
+    /// Makes room for so many faces, of one loop each, with so many corners in all.
+    pub fn reserve(&mut self, faces: usize, corners: usize) {
+        self.corners.reserve(corners);
+        self.loop_ends.reserve(faces);
+        self.faces.reserve(faces);
+    }
+
     /// Adds an origin and returns its number.
     pub fn add_origin(&mut self, origin: Origin) -> u32 {
         self.origins.push(origin);

@@ -16,7 +16,7 @@ const SMOOTH: f64 = 0.985;
 /// pen.move_to(dvec2(0., 0.));
 /// pen.line_to(dvec2(2., 0.));
 /// pen.line_to(dvec2(0., 2.));
-/// assert_eq!(pen.finish()[0].area(), 2.0);
+/// assert_eq!(pen.take()[0].area(), 2.0);
 /// ```
 #[derive(Debug)]
 pub struct Outline {
@@ -106,9 +106,9 @@ impl Outline {
         }
     }
 
-    /// The contours drawn, in order.
-    pub fn finish(mut self) -> Vec<Contour> {
+    /// The contours drawn since the last call, in order; curves go on being numbered.
+    pub fn take(&mut self) -> Vec<Contour> {
         self.close();
-        self.contours
+        std::mem::take(&mut self.contours)
     }
 }

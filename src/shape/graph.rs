@@ -1,10 +1,11 @@
 //! The arena of hash-consed nodes.
 
-use std::hash::{Hash, Hasher};
-
 use rustc_hash::FxHashMap;
 
-use super::node::{Kind, Node, ShapeId};
+use super::{
+    fingerprint::fingerprint,
+    node::{Kind, Node, ShapeId},
+};
 use crate::base::Span;
 
 /// All shapes of one evaluation.
@@ -23,7 +24,8 @@ pub struct ShapeGraph {
     nodes: Vec<Node>,
     origins: Vec<Span>,
     kinds: Vec<Kind>,
-    index: FxHashMap<u64, Vec<ShapeId>>,
+    /// By fingerprint; nodes whose fingerprints collide stand at the next free numbers.
+    index: FxHashMap<u64, ShapeId>,
 }
 
 impl ShapeGraph {
@@ -33,16 +35,19 @@ impl ShapeGraph {
     /// # Panics
     /// When a child's number is not of this graph, or solids and profiles are mixed.
     pub fn add(&mut self, node: Node, origin: Span) -> ShapeId {
-        let key = fingerprint(&node);
-        if let Some(found) = self.find(key, &node) {
-            return found;
+        let mut key = fingerprint(&node);
+        while let Some(&found) = self.index.get(&key) {
+            if *self.node(found) == node {
+                return found;
+            }
+            key = key.wrapping_add(1);
         }
         let kind = self.kind_of(&node);
         let id = ShapeId(self.nodes.len() as u32);
         self.nodes.push(node);
         self.origins.push(origin);
         self.kinds.push(kind);
-        self.index.entry(key).or_default().push(id);
+        self.index.insert(key, id);
         id
     }
 
@@ -69,11 +74,6 @@ impl ShapeGraph {
     /// Whether there is no node yet.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
-    }
-
-    fn find(&self, key: u64, node: &Node) -> Option<ShapeId> {
-        let candidates = self.index.get(&key)?;
-        candidates.iter().copied().find(|&id| self.node(id) == node)
     }
 
     fn kind_of(&self, node: &Node) -> Kind {
@@ -103,18 +103,4 @@ impl ShapeGraph {
         assert!(kinds.all(|kind| kind == first), "solids and profiles cannot be mixed");
         first
     }
-}
-
-/// A hash of the node's printed form: stable, and free of a second definition of equality.
-fn fingerprint(node: &Node) -> u64 {
-    struct Feed(rustc_hash::FxHasher);
-    impl std::fmt::Write for Feed {
-        fn write_str(&mut self, s: &str) -> std::fmt::Result {
-            s.hash(&mut self.0);
-            Ok(())
-        }
-    }
-    let mut feed = Feed(rustc_hash::FxHasher::default());
-    let _ = std::fmt::write(&mut feed, format_args!("{node:?}"));
-    feed.0.finish()
 }

@@ -3,6 +3,7 @@
 //! Pure data. Nodes are immutable and hash-consed: equal construction gives the same
 //! [`ShapeId`], so that equality is an integer comparison and results can be kept by node.
 
+mod fingerprint;
 pub mod geometry;
 pub mod graph;
 pub mod node;

@@ -255,6 +255,20 @@ fn revolutions_start_on_x() {
 }
 
 #[test]
+fn a_revolution_sees_the_coordinates_in_the_plane_of_a_turned_profile() {
+    let mut m = Model::default();
+    let rect = m.rect(4., 6.);
+    let up = m.turned(rect, DMat3::from_cols(DVec3::X, DVec3::Z, -DVec3::Y));
+    let profile = m.at(up, [10., 7., 1.]);
+    let ring = m.add(Node::Revolve { profile, angle: 360., sides: Some(8) });
+    let outline = [dvec2(8., -2.), dvec2(12., -2.), dvec2(12., 4.), dvec2(8., 4.)];
+    let (v, a) = revolved(8, &outline);
+    if let Some(export) = check("turned_ring", &m, ring, v, a) {
+        assert!(export.has([12., 0., 4.]) && export.has([8., 0., -2.]));
+    }
+}
+
+#[test]
 fn set_operations_with_coplanar_faces() {
     let mut m = Model::default();
     let a = m.cuboid([0., 0., 0.], [10., 10., 10.]);

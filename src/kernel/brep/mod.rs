@@ -1,8 +1,13 @@
 //! Exact polyhedra: boundary representation by planar polygons.
 
 mod band;
+pub mod boolean;
+mod closing;
+pub mod distance;
 pub mod extrude;
+pub mod faces;
 mod flank;
+pub mod hull;
 pub mod measure;
 pub mod polyhedron;
 pub mod primitive;

@@ -14,8 +14,8 @@ const ROUNDING: f64 = 3.3306690738754716e-16;
 /// ```
 /// use glam::dvec2;
 /// use katachi::kernel::profile::orientation::orientation;
-/// let turn = orientation(dvec2(0.1, 0.1), dvec2(0.2, 0.2), dvec2(0.3, 0.3));
-/// assert_eq!(turn, std::cmp::Ordering::Less); // 0.3 is not three times 0.1
+/// let turn = orientation(dvec2(0.0, 0.0), dvec2(0.1, 0.1), dvec2(0.1 + 0.2, 0.3));
+/// assert_eq!(turn, std::cmp::Ordering::Less); // 0.1 + 0.2 is more than 0.3
 /// ```
 pub fn orientation(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
     let left = (a.x - c.x) * (b.y - c.y);

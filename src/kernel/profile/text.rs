@@ -128,7 +128,7 @@ pub fn text(text: &str, options: &TextOptions, font: Option<&[u8]>) -> Result<Te
             .draw(&DrawOptions::default(), DrawMemory::Scratch, &mut pen)
             .map_err(|error| ProfileError::Font { reason: error.to_string() })?;
     }
-    let contours: Vec<Contour> = pen.outline.finish();
+    let contours: Vec<Contour> = pen.outline.take();
     Ok(Text { region: overlay(&contours, [], Rule::Union, Fill::NonZero), width })
 }
 

@@ -18,10 +18,14 @@ pub(super) fn keeps_plane(placement: &Placement) -> bool {
     flat && m.z_axis.z > 0.0
 }
 
-/// The rigid frame of the image of xy: origin and x direction are those of the placement, z is the
-/// normal on the side where the placement takes +z. `None` if the image has no area.
+/// The rigid frame of the image of xy: a height where the image is parallel to xy, else origin and x
+/// direction are those of the placement and z is the normal on the side where the placement takes +z.
+/// `None` if the image has no area.
 pub(super) fn frame(placement: &Placement) -> Option<Placement> {
     let m = placement.linear();
+    if m.x_axis.z == 0.0 && m.y_axis.z == 0.0 && m.z_axis.z > 0.0 {
+        return Some(Placement::translation(placement.offset() * DVec3::Z));
+    }
     let normal = m.x_axis.cross(m.y_axis).try_normalize()?;
     let z = if normal.dot(m.z_axis) < 0.0 { -normal } else { normal };
     let x = m.x_axis.normalize();
@@ -32,6 +36,14 @@ pub(super) fn frame(placement: &Placement) -> Option<Placement> {
 pub(super) fn inverse(frame: &Placement) -> Placement {
     let turned = frame.linear().transpose();
     Placement::new(turned, -(turned * frame.offset()))
+}
+
+/// The inverse of a rigid frame but for its shift within its plane: how a revolution sees a profile
+/// that was turned out of xy and then moved.
+pub(super) fn unrolled(frame: &Placement) -> Placement {
+    let (m, t) = (frame.linear(), frame.offset());
+    let shift = DVec3::new(t.dot(m.x_axis), t.dot(m.y_axis), 0.0);
+    Placement::translation(shift).after(&inverse(frame))
 }
 
 /// What a placement does within xy, as a placement that leaves z alone.

@@ -33,7 +33,7 @@ impl Writer<'_> {
                 let frame = self.frame_of(*profile)?;
                 let words = self.revolution(*profile, *angle, *sides)?;
                 let depth = self.prefixes(&words, depth);
-                self.figure(*profile, &plane::inverse(&frame), depth)
+                self.figure(*profile, &plane::unrolled(&frame), depth)
             }
             Node::OffsetProfile { profile, .. } | Node::RoundProfile { profile, .. } => {
                 let words = self.offsets(id);
@@ -125,12 +125,9 @@ impl Writer<'_> {
         scale: DVec2,
     ) -> Result<String, ScadError> {
         let mut words = format!("linear_extrude(height = {}", Shortest(height));
-        if twist != 0.0 {
-            let corners = self.region(profile, "twisted profile")?;
-            let reach = corners.contours().flat_map(|c| &c.points).map(|p| p.length());
-            let edges = corners.contours().flat_map(|c| edge_lengths(&c.points));
-            let (reach, edge) = (reach.fold(0.0, f64::max), edges.fold(0.0, f64::max));
-            let slices = facets::twist_slices(reach, edge, twist, self.tolerance);
+        if twist != 0.0 || scale.x != scale.y {
+            let region = self.region(profile, "extruded profile")?;
+            let slices = facets::slices(&region, twist, scale, self.tolerance);
             words += &format!(", twist = {}, slices = {slices}", Shortest(-twist));
         }
         if scale != DVec2::ONE {
@@ -147,17 +144,18 @@ impl Writer<'_> {
     ) -> Result<Vec<String>, ScadError> {
         let full = match sides {
             Some(sides) => sides,
-            None => {
-                let corners = self.region(profile, "revolved profile")?;
-                let reach = corners.contours().flat_map(|c| &c.points).map(|p| p.x.abs());
-                facets::circle(reach.fold(0.0, f64::max), self.tolerance)
-            }
+            None => facets::turn(&self.region(profile, "revolved profile")?, self.tolerance),
         };
-        if angle.abs() == 360.0 {
+        if angle == 360.0 {
             // A full turn starts at -x in OpenSCAD.
             let turn = "rotate([0, 0, 180])".to_string();
             return Ok(vec![turn, format!("rotate_extrude($fn = {full}, convexity = 10)")]);
         }
+        let share = f64::from(full) * angle / 360.0;
+        let count = if sides.is_some() { share.floor() } else { share.ceil() };
+        // Each facet turns less than half a turn.
+        let count = count.max((angle / 180.0).floor() + 1.0) as u32;
+        let full = facets::full_turn(count, angle);
         Ok(vec![format!(
             "rotate_extrude(angle = {}, $fn = {full}, convexity = 10)",
             Shortest(angle)
@@ -202,8 +200,10 @@ impl Writer<'_> {
     }
 
     fn torus(&self, major: f64, minor: f64, sides: Option<u32>) -> String {
-        let (long, short) =
-            (self.circle_sides(major + minor, sides), self.circle_sides(minor, sides));
+        let (long, short) = match sides {
+            Some(sides) => (sides, sides),
+            None => facets::torus(major, minor, self.tolerance),
+        };
         format!(
             "rotate([0, 0, 180]) rotate_extrude($fn = {long}, convexity = 10) \
              translate([{}, 0]) circle(r = {}, $fn = {short});",
@@ -220,11 +220,6 @@ impl Writer<'_> {
             format!("scale({}) circle(r = 1, $fn = {sides});", points::pair(radii))
         }
     }
-}
-
-fn edge_lengths(corners: &[DVec2]) -> impl Iterator<Item = f64> {
-    let next = corners.iter().cycle().skip(1);
-    corners.iter().zip(next).map(|(a, b)| a.distance(*b))
 }
 
 fn cuboid(min: DVec3, max: DVec3) -> String {

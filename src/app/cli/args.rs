@@ -1,0 +1,201 @@
+//! The arguments of the command, for clap.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+use crate::{app::render::Style, session::Tolerance};
+
+/// A small language for solid modelling.
+#[derive(Debug, Parser)]
+#[command(name = "katachi", version, disable_help_subcommand = true)]
+#[command(after_help = "Exit codes: 0 ok, 1 model error, 2 usage, 3 test failed, 5 limit hit.")]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+    /// How diagnostics are written to standard error
+    #[arg(long, global = true, value_enum, value_name = "STYLE", default_value_t)]
+    #[arg(hide_possible_values = true, hide_default_value = true)]
+    #[arg(help = "Diagnostics on standard error: human, short or json")]
+    pub diagnostics: Style,
+}
+
+/// The subcommands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Make the meshes of a model and write them
+    Build(Build),
+    /// Find mistakes without making any geometry
+    Check(Check),
+    /// Run the tests of a model
+    Test(Test),
+    /// Print volume, area, bounds and more of each part
+    Measure(Measure),
+    /// List the parameters of a model
+    Params(Params),
+    /// Start a project in a new folder
+    New(New),
+}
+
+/// Which model, with which parameters.
+#[derive(Debug, Args)]
+pub struct Model {
+    /// The model, or - for standard input
+    pub file: String,
+    /// Set a parameter, or those of a JSON file
+    #[arg(short = 'D', value_name = "NAME=VALUE|@FILE")]
+    pub define: Vec<String>,
+    /// Project root [default: nearest folder upwards with katachi.toml]
+    #[arg(long, value_name = "DIR")]
+    pub root: Option<PathBuf>,
+}
+
+/// How solids are made.
+#[derive(Debug, Args)]
+pub struct Making {
+    /// Largest chord error, such as 0.02mm [default: the model's, else 0.05mm]
+    #[arg(long, value_name = "LENGTH", value_parser = tolerance)]
+    pub tolerance: Option<Tolerance>,
+    /// Number of threads [default: one for each core]
+    #[arg(short, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub jobs: Option<u16>,
+    /// Write how long each phase took, as JSON
+    #[arg(long, value_name = "FILE")]
+    pub timings: Option<PathBuf>,
+}
+
+/// `katachi build`.
+#[derive(Debug, Args)]
+pub struct Build {
+    /// Which model.
+    #[command(flatten)]
+    pub model: Model,
+    /// Only this output (may be repeated)
+    #[arg(short, long = "part", value_name = "NAME")]
+    pub part: Vec<String>,
+    /// Output folder, made if missing
+    #[arg(short, value_name = "DIR", default_value = "out")]
+    pub output: PathBuf,
+    /// Write each part as NAME.FORMAT in place of the exports
+    #[arg(long, value_name = "FORMAT")]
+    #[arg(help = "Write parts as stl, stl-ascii, obj, off, ply, 3mf, glb or scad, no exports")]
+    pub format: Option<String>,
+    /// How.
+    #[command(flatten)]
+    pub making: Making,
+}
+
+/// `katachi check`.
+#[derive(Debug, Args)]
+pub struct Check {
+    /// Which model.
+    #[command(flatten)]
+    pub model: Model,
+}
+
+/// `katachi test`.
+#[derive(Debug, Args)]
+pub struct Test {
+    /// Which model.
+    #[command(flatten)]
+    pub model: Model,
+    /// Only tests whose title contains this
+    #[arg(long, value_name = "TEXT")]
+    pub filter: Option<String>,
+    /// Rewrite goldens and snapshots that differ
+    #[arg(long)]
+    pub update: bool,
+    /// How.
+    #[command(flatten)]
+    pub making: Making,
+}
+
+/// `katachi measure`.
+#[derive(Debug, Args)]
+pub struct Measure {
+    /// Which model.
+    #[command(flatten)]
+    pub model: Model,
+    /// Only this part (may be repeated)
+    #[arg(short, long = "part", value_name = "NAME")]
+    pub part: Vec<String>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    /// How.
+    #[command(flatten)]
+    pub making: Making,
+}
+
+/// `katachi params`.
+#[derive(Debug, Args)]
+pub struct Params {
+    /// Which model.
+    #[command(flatten)]
+    pub model: Model,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `katachi new`.
+#[derive(Debug, Args)]
+pub struct New {
+    /// The folder to make; its name is the project's
+    pub name: PathBuf,
+}
+
+/// Millimetres in each unit of length.
+const UNITS: [(&str, f64); 6] =
+    [("um", 1e-3), ("mm", 1.0), ("cm", 10.0), ("m", 1e3), ("in", 25.4), ("ft", 304.8)];
+
+/// A length such as `0.02mm` or `0.02`, greater than zero.
+fn tolerance(text: &str) -> Result<Tolerance, String> {
+    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let unit = if digits.len() == text.len() { "mm" } else { &text[digits.len()..] };
+    let factor = UNITS.iter().find(|(name, _)| *name == unit).map(|(_, factor)| factor);
+    let factor = factor.ok_or("a length is needed, such as 0.02mm")?;
+    let number: f64 = digits.parse().map_err(|_| "a length is needed, such as 0.02mm")?;
+    Tolerance::new(number * factor).ok_or_else(|| "a length greater than zero is needed".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn the_definition_is_sound() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn a_tolerance_is_a_length_above_zero() {
+        let mm = |text| tolerance(text).map(Tolerance::mm);
+        assert_eq!(mm("0.02mm"), Ok(0.02));
+        assert_eq!(mm("20um"), Ok(0.02));
+        assert_eq!(mm("0.5"), Ok(0.5));
+        for bad in ["0mm", "-1mm", "nan", "inf", "1deg", "mm", "", "1e999"] {
+            assert!(mm(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn each_help_fits_a_screen() {
+        let mut command = Cli::command().term_width(80);
+        command.build();
+        let names: Vec<String> =
+            command.get_subcommands().map(|c| c.get_name().to_string()).collect();
+        let mut pages = vec![command.render_help().to_string()];
+        for name in names {
+            let sub = command.find_subcommand_mut(&name).expect("listed");
+            pages.push(sub.clone().term_width(80).render_help().to_string());
+        }
+        for page in pages {
+            assert!(page.lines().count() <= 24, "too long:\n{page}");
+            assert!(page.lines().all(|line| line.chars().count() <= 80), "too wide:\n{page}");
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! What every command that works on a model sets up first.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+use super::{
+    Exit,
+    args::{Making, Model},
+};
+use crate::{
+    app::{
+        disk::Disk,
+        render::{self, Style},
+        stopwatch::Stopwatch,
+        write::write_whole,
+    },
+    base::Diagnostic,
+    session::{Given, Session, Tolerance},
+};
+
+/// Files, parameters and watch of one command.
+#[derive(Debug)]
+pub struct Desk {
+    /// The files.
+    pub disk: Disk,
+    /// The model's path in them.
+    pub entry: String,
+    /// Parameters given with `-D`, the last of a name counts.
+    pub given: Vec<(String, Given)>,
+    watch: Stopwatch,
+    tolerance: Option<Tolerance>,
+    timings: Option<PathBuf>,
+    style: Style,
+}
+
+impl Desk {
+    /// Opens the model's world. The error is in words for the user.
+    pub fn open(model: &Model, making: Option<&Making>, style: Style) -> Result<Desk, String> {
+        let watch = Stopwatch::start();
+        if let Some(jobs) = making.and_then(|making| making.jobs) {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs.into());
+            pool.build_global().map_err(|error| error.to_string())?;
+        }
+        let (disk, entry) = Disk::open(&model.file, model.root.as_deref())?;
+        let mut given = vec![];
+        for define in &model.define {
+            given.extend(defined(define)?);
+        }
+        Ok(Desk {
+            disk,
+            entry,
+            given,
+            watch,
+            tolerance: making.and_then(|making| making.tolerance),
+            timings: making.and_then(|making| making.timings.clone()),
+            style,
+        })
+    }
+
+    /// A session over these files.
+    pub fn session(&self) -> Session<'_> {
+        Session::new(&self.disk, &self.watch, self.tolerance)
+    }
+
+    /// Reports what was found, writes the timings if asked to, and says how the command ends.
+    pub fn report(&self, session: &Session, diagnostics: &[Diagnostic]) -> io::Result<Exit> {
+        self.watch.end_bar();
+        render::report(self.style, &session.sources(), diagnostics)?;
+        let exit = Exit::of(diagnostics);
+        let Some(path) = &self.timings else { return Ok(exit) };
+        match write_beside(path, self.watch.timings().as_bytes()) {
+            Ok(()) => Ok(exit),
+            Err(words) => super::fail(self.style, exit.max(Exit::Model), words),
+        }
+    }
+
+    /// The watch.
+    pub fn watch(&self) -> &Stopwatch {
+        &self.watch
+    }
+}
+
+/// Writes a file that the user named by its path.
+fn write_beside(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    let name = path.file_name().ok_or_else(|| format!("`{}` names no file", path.display()))?;
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    write_whole(folder, &name.to_string_lossy(), bytes).map(drop)
+}
+
+/// The parameters of one `-D`: `name=value`, or `@file.json`.
+fn defined(define: &str) -> Result<Vec<(String, Given)>, String> {
+    if let Some(file) = define.strip_prefix('@') {
+        let text = fs::read_to_string(file).map_err(|error| format!("`{file}`: {error}"))?;
+        let object: serde_json::Map<String, serde_json::Value> =
+            serde_json::from_str(&text).map_err(|error| format!("`{file}`: {error}"))?;
+        return Ok(object.into_iter().map(|(name, value)| (name, Given::Json(value))).collect());
+    }
+    let (name, value) = define
+        .split_once('=')
+        .ok_or_else(|| format!("`-D {define}`: NAME=VALUE or @FILE is needed"))?;
+    Ok(vec![(name.trim().to_string(), Given::Text(value.trim().to_string()))])
+}

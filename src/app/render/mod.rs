@@ -1,0 +1,100 @@
+//! Diagnostics as text: for people, for `grep`, for programs.
+
+mod human;
+mod json;
+mod short;
+
+use std::io::{self, IsTerminal, Write};
+
+use crate::base::{Diagnostic, SourceMap};
+
+/// How diagnostics are written.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, clap::ValueEnum)]
+pub enum Style {
+    /// With the source lines and underlines.
+    #[default]
+    Human,
+    /// One line each: `path:line:column: error[code]: message`.
+    Short,
+    /// One JSON object a line.
+    Json,
+}
+
+/// Writes diagnostics to standard error; colours only on a terminal that wants them.
+pub fn report(style: Style, sources: &SourceMap, diagnostics: &[Diagnostic]) -> io::Result<()> {
+    let mut err = io::stderr().lock();
+    let color = err.is_terminal() && std::env::var_os("NO_COLOR").is_none();
+    err.write_all(&rendered(style, color, sources, diagnostics)?)
+}
+
+/// The text of diagnostics.
+fn rendered(
+    style: Style,
+    color: bool,
+    sources: &SourceMap,
+    diagnostics: &[Diagnostic],
+) -> io::Result<Vec<u8>> {
+    let mut text = vec![];
+    for diagnostic in diagnostics {
+        match style {
+            Style::Human => human::write(&mut text, color, sources, diagnostic)?,
+            Style::Short => short::write(&mut text, sources, diagnostic)?,
+            Style::Json => json::write(&mut text, sources, diagnostic)?,
+        }
+    }
+    Ok(text)
+}
+
+/// `error` or `warning`.
+fn severity(diagnostic: &Diagnostic) -> &'static str {
+    if diagnostic.is_error() { "error" } else { "warning" }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::{Code, Span};
+
+    fn example() -> (SourceMap, Diagnostic) {
+        let mut sources = SourceMap::default();
+        let id = sources.add("lid.kata", "形 = 2\nbox(1, radius = 5)\n");
+        let diagnostic = Diagnostic::error(Code::UnknownArgument, "no parameter `radius`")
+            .label(Span::new(id, 15, 21), "not a parameter of box")
+            .help("did you mean `r`?")
+            .fix(Span::new(id, 15, 21), "r");
+        (sources, diagnostic)
+    }
+
+    fn text(style: Style) -> String {
+        let (sources, diagnostic) = example();
+        let text = rendered(style, false, &sources, &[diagnostic]).expect("a vector is writable");
+        String::from_utf8(text).expect("text")
+    }
+
+    #[test]
+    fn a_short_line_names_the_place_and_the_code() {
+        assert_eq!(
+            text(Style::Short),
+            "lid.kata:2:8: error[unknown-argument]: no parameter `radius`\n"
+        );
+    }
+
+    #[test]
+    fn a_json_line_has_bytes_lines_and_columns() {
+        let value: serde_json::Value = serde_json::from_str(&text(Style::Json)).expect("JSON");
+        let place = &value["labels"][0];
+        assert_eq!((&place["line"], &place["column"]), (&2.into(), &8.into()));
+        assert_eq!((&place["start"], &place["end"]), (&15.into(), &21.into()));
+        assert_eq!(value["fix"]["replacement"], "r");
+        assert_eq!(value["code"], "unknown-argument");
+    }
+
+    #[test]
+    fn people_see_the_line_underlined() {
+        let text = text(Style::Human);
+        for part in ["Error", "lid.kata:2:8", "box(1, radius = 5)", "not a parameter", "r`?"] {
+            assert!(text.contains(part), "{part} is missing in\n{text}");
+        }
+        assert!(!text.contains('\u{1b}'), "no escape codes off a terminal");
+    }
+}

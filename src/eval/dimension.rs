@@ -1,0 +1,153 @@
+//! Dimensions of numbers: powers of length (millimetres) and of angle (degrees).
+
+use std::fmt;
+
+use crate::syntax::ast::UnitName;
+
+/// length^i · angle^j. A bare number has both exponents 0.
+///
+/// ```
+/// use katachi::eval::Dimension;
+/// assert_eq!(Dimension::LENGTH.times(Dimension::LENGTH), Some(Dimension::AREA));
+/// assert_eq!(Dimension::AREA.to_string(), "mm^2");
+/// ```
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+pub struct Dimension {
+    /// Exponent of length.
+    pub length: i8,
+    /// Exponent of angle.
+    pub angle: i8,
+}
+
+impl Dimension {
+    /// A bare number.
+    pub const BARE: Dimension = Dimension::new(0, 0);
+    /// Millimetres.
+    pub const LENGTH: Dimension = Dimension::new(1, 0);
+    /// Degrees.
+    pub const ANGLE: Dimension = Dimension::new(0, 1);
+    /// Square millimetres.
+    pub const AREA: Dimension = Dimension::new(2, 0);
+    /// Cubic millimetres.
+    pub const VOLUME: Dimension = Dimension::new(3, 0);
+
+    /// length^`length` · angle^`angle`.
+    pub const fn new(length: i8, angle: i8) -> Dimension {
+        Dimension { length, angle }
+    }
+
+    /// Of a product; `None` when an exponent leaves the range -128..127.
+    pub fn times(self, other: Dimension) -> Option<Dimension> {
+        let length = self.length.checked_add(other.length)?;
+        Some(Dimension { length, angle: self.angle.checked_add(other.angle)? })
+    }
+
+    /// Of a quotient.
+    pub fn over(self, other: Dimension) -> Option<Dimension> {
+        let length = self.length.checked_sub(other.length)?;
+        Some(Dimension { length, angle: self.angle.checked_sub(other.angle)? })
+    }
+
+    /// Of a whole power.
+    pub fn power(self, exponent: i32) -> Option<Dimension> {
+        let raise = |e: i8| i8::try_from(i32::from(e).checked_mul(exponent)?).ok();
+        Some(Dimension { length: raise(self.length)?, angle: raise(self.angle)? })
+    }
+
+    /// Of a square root; `None` when an exponent is odd.
+    pub fn root(self) -> Option<Dimension> {
+        let even = self.length % 2 == 0 && self.angle % 2 == 0;
+        even.then(|| Dimension::new(self.length / 2, self.angle / 2))
+    }
+
+    /// The dimension in which two numbers can be added or compared: their own when it is the same,
+    /// and that of a length or angle beside a bare number.
+    pub fn common(self, other: Dimension) -> Option<Dimension> {
+        match (self, other) {
+            (a, b) if a == b => Some(a),
+            (Dimension::BARE, b @ (Dimension::LENGTH | Dimension::ANGLE)) => Some(b),
+            (a @ (Dimension::LENGTH | Dimension::ANGLE), Dimension::BARE) => Some(a),
+            _ => None,
+        }
+    }
+
+    /// In plain words with an article: `a length`, `1/length`.
+    pub fn words(self) -> String {
+        match (self.length, self.angle) {
+            (0, 0) => "a bare number".into(),
+            (1, 0) => "a length".into(),
+            (2, 0) => "an area".into(),
+            (3, 0) => "a volume".into(),
+            (0, 1) => "an angle".into(),
+            (l, a) => fraction(l, a),
+        }
+    }
+}
+
+fn fraction(length: i8, angle: i8) -> String {
+    let side = |sign: i8| {
+        let power = |name: &str, exponent: i8| match exponent * sign {
+            e if e <= 0 => None,
+            1 => Some(name.to_string()),
+            e => Some(format!("{name}^{e}")),
+        };
+        let words = [power("length", length.max(-127)), power("angle", angle.max(-127))];
+        words.into_iter().flatten().collect::<Vec<_>>().join("*")
+    };
+    match (side(1), side(-1)) {
+        (over, under) if under.is_empty() => over,
+        (over, under) if over.is_empty() => format!("1/{under}"),
+        (over, under) => format!("{over}/{under}"),
+    }
+}
+
+impl fmt::Display for Dimension {
+    /// The unit behind a number: `mm`, `mm^2`, `mm*deg^-1`; nothing for a bare number.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut first = true;
+        for (unit, exponent) in [("mm", self.length), ("deg", self.angle)] {
+            if exponent == 0 {
+                continue;
+            }
+            if !first {
+                f.write_str("*")?;
+            }
+            first = false;
+            f.write_str(unit)?;
+            if exponent != 1 {
+                write!(f, "^{exponent}")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What one of a unit is in millimetres or degrees, and which dimension it has.
+pub fn unit_factor(unit: UnitName) -> (f64, Dimension) {
+    match unit {
+        UnitName::Um => (0.001, Dimension::LENGTH),
+        UnitName::Mm => (1.0, Dimension::LENGTH),
+        UnitName::Cm => (10.0, Dimension::LENGTH),
+        UnitName::M => (1000.0, Dimension::LENGTH),
+        UnitName::In => (25.4, Dimension::LENGTH),
+        UnitName::Ft => (304.8, Dimension::LENGTH),
+        UnitName::Deg => (1.0, Dimension::ANGLE),
+        UnitName::Rad => (180.0 / std::f64::consts::PI, Dimension::ANGLE),
+        UnitName::Turn => (360.0, Dimension::ANGLE),
+    }
+}
+
+/// A unit as it is written.
+pub fn unit_text(unit: UnitName) -> &'static str {
+    match unit {
+        UnitName::Um => "um",
+        UnitName::Mm => "mm",
+        UnitName::Cm => "cm",
+        UnitName::M => "m",
+        UnitName::In => "in",
+        UnitName::Ft => "ft",
+        UnitName::Deg => "deg",
+        UnitName::Rad => "rad",
+        UnitName::Turn => "turn",
+    }
+}

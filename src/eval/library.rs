@@ -1,0 +1,167 @@
+//! The standard library: Katachi text, embedded. A name is parsed when it is first used.
+
+use std::sync::{Arc, OnceLock};
+
+use rustc_hash::FxHashMap;
+
+use crate::base::SourceId;
+
+/// The number under which library text stands in spans. No source map holds it: errors inside the
+/// library are shown at the call that led there.
+pub const LIBRARY: SourceId = SourceId(u32::MAX);
+
+/// The files whose names every model sees.
+const PRELUDE: &[(&str, &str)] = &[
+    ("std/algebra", include_str!("../../stdlib/algebra.kata")),
+    ("std/constants", include_str!("../../stdlib/constants.kata")),
+    ("std/lists", include_str!("../../stdlib/lists.kata")),
+    ("std/mathematics", include_str!("../../stdlib/mathematics.kata")),
+    ("std/measures", include_str!("../../stdlib/measures.kata")),
+    ("std/placing", include_str!("../../stdlib/placing.kata")),
+    ("std/profiles", include_str!("../../stdlib/profiles.kata")),
+    ("std/solids", include_str!("../../stdlib/solids.kata")),
+    ("std/strings", include_str!("../../stdlib/strings.kata")),
+    ("std/testing", include_str!("../../stdlib/testing.kata")),
+];
+
+/// The files that a model may `use`.
+const MODULES: &[(&str, &str)] = &[("std/metric", include_str!("../../stdlib/metric.kata"))];
+
+/// The text of a library module such as `std/metric`, with or without `.kata`.
+///
+/// ```
+/// assert!(katachi::eval::library::module("std/metric").unwrap().contains("clearance"));
+/// assert!(katachi::eval::library::module("std/nothing").is_none());
+/// ```
+pub fn module(path: &str) -> Option<&'static str> {
+    let path = path.strip_suffix(".kata").unwrap_or(path);
+    MODULES.iter().find(|(name, _)| *name == path).map(|(_, text)| *text)
+}
+
+/// The paths of the library modules.
+pub fn modules() -> impl Iterator<Item = &'static str> {
+    MODULES.iter().map(|(name, _)| *name)
+}
+
+/// One declaration of the library: what reference, hover and tests read.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Declaration {
+    /// Its name.
+    pub name: &'static str,
+    /// The file it stands in, such as `std/solids`.
+    pub file: &'static str,
+    /// The `///` lines without the slashes, joined by line ends.
+    pub doc: String,
+    /// The declaration itself.
+    pub text: &'static str,
+}
+
+impl Declaration {
+    /// The signature as written: `fn box(x: Length, y: Length, z: Length) -> Solid`, or the name of
+    /// a constant.
+    pub fn signature(&self) -> &'static str {
+        let end = self
+            .text
+            .find(" = builtin")
+            .or_else(|| self.text.find(" = ").filter(|_| !self.text.starts_with("fn")));
+        let line = self.text.lines().next().unwrap_or("");
+        self.text.get(..end.unwrap_or(line.len())).unwrap_or(line).trim_end_matches(" {")
+    }
+
+    /// The examples of the documentation: the text between lines of three back quotes.
+    pub fn examples(&self) -> Vec<&str> {
+        self.doc.split("```").skip(1).step_by(2).map(str::trim).collect()
+    }
+}
+
+/// The names of the library and where each is declared.
+#[derive(Debug)]
+pub struct Index {
+    numbers: FxHashMap<&'static str, u32>,
+    entries: Vec<(&'static str, Vec<Declaration>)>,
+}
+
+impl Index {
+    /// The index of the embedded library, read once.
+    pub fn get() -> &'static Index {
+        static INDEX: OnceLock<Index> = OnceLock::new();
+        INDEX.get_or_init(Index::read)
+    }
+
+    fn read() -> Index {
+        let mut index = Index { numbers: FxHashMap::default(), entries: vec![] };
+        for (file, text) in PRELUDE {
+            for declaration in declarations_of(file, text) {
+                index.add(declaration);
+            }
+        }
+        index
+    }
+
+    fn add(&mut self, declaration: Declaration) {
+        let next = self.entries.len() as u32;
+        let number = *self.numbers.entry(declaration.name).or_insert(next);
+        if number == next {
+            self.entries.push((declaration.name, vec![]));
+        }
+        self.entries[number as usize].1.push(declaration);
+    }
+
+    /// The number of a name.
+    pub fn find(&self, name: &str) -> Option<u32> {
+        self.numbers.get(name).copied()
+    }
+
+    /// The name behind a number.
+    pub fn name(&self, number: u32) -> &'static str {
+        self.entries[number as usize].0
+    }
+
+    /// All names.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.entries.iter().map(|(name, _)| *name)
+    }
+
+    /// All declarations, those of one name together.
+    pub fn declarations(&self) -> impl Iterator<Item = &Declaration> {
+        self.entries.iter().flat_map(|(_, declarations)| declarations)
+    }
+
+    /// The text that declares a name: all its signatures.
+    pub fn text(&self, number: u32) -> Arc<str> {
+        let declarations = &self.entries[number as usize].1;
+        let texts: Vec<&str> = declarations.iter().map(|declaration| declaration.text).collect();
+        texts.join("\n").into()
+    }
+}
+
+/// The declarations of a library file. Each begins in the first column with `fn name(` or a name,
+/// after its `///` lines; lines that go on with it are indented or begin with a closing bracket.
+fn declarations_of(file: &'static str, text: &'static str) -> Vec<Declaration> {
+    let mut found: Vec<Declaration> = vec![];
+    let mut doc = String::new();
+    let mut at = 0;
+    let mut open: Option<(usize, String)> = None;
+    let starts = |line: &str| line.starts_with(char::is_alphabetic) || line.starts_with('/');
+    for line in text.split_inclusive('\n') {
+        if starts(line) {
+            found.extend(
+                open.take().and_then(|(start, doc)| declaration(file, &text[start..at], doc)),
+            );
+            if let Some(words) = line.strip_prefix("///") {
+                doc.push_str(words.strip_prefix(' ').unwrap_or(words));
+            } else if !line.starts_with('/') {
+                open = Some((at, std::mem::take(&mut doc)));
+            }
+        }
+        at += line.len();
+    }
+    found.extend(open.and_then(|(start, doc)| declaration(file, &text[start..], doc)));
+    found
+}
+
+fn declaration(file: &'static str, text: &'static str, doc: String) -> Option<Declaration> {
+    let rest = text.strip_prefix("fn ").unwrap_or(text);
+    let end = rest.find(|c: char| !(c.is_alphanumeric() || c == '_'))?;
+    Some(Declaration { name: &rest[..end], file, doc, text: text.trim_end() })
+}

@@ -1,0 +1,429 @@
+//! What a file offers: parameters, outputs, exports, settings.
+
+use std::sync::Arc;
+
+use super::{
+    evaluator::Evaluator,
+    failure::{Failure, Outcome, fail},
+    instance::{Cell, InstanceId},
+    nearest::did_you_mean,
+    types::{Type, shown},
+    unit::{Global, GlobalKind, Unit},
+    value::{Symbol, Value},
+};
+use crate::{
+    base::{Code, Diagnostic, Span},
+    shape::ShapeId,
+    syntax::ast::OutputKind,
+};
+
+/// A parameter of a file.
+#[derive(Clone, Debug)]
+pub struct ParamInfo {
+    /// Its name.
+    pub name: Arc<str>,
+    /// The text after `///`.
+    pub doc: Option<Arc<str>>,
+    /// The title of its group.
+    pub group: Option<Arc<str>>,
+    /// Its type: `Length`, `String`, ...
+    pub kind: String,
+    /// Its default, if that can be evaluated.
+    pub default: Option<Value>,
+    /// Its value in this instance, if it is valid.
+    pub value: Option<Value>,
+    /// What it may be.
+    pub domain: Domain,
+    /// Whether its `when` holds.
+    pub active: bool,
+    /// Its name's place.
+    pub span: Span,
+}
+
+/// What a parameter may be.
+#[derive(Clone, Debug)]
+pub enum Domain {
+    /// Anything of its type.
+    Any,
+    /// A range of numbers.
+    Range {
+        /// Smallest value.
+        min: Value,
+        /// Largest value.
+        max: Value,
+        /// Distance of the allowed values, where a step is written.
+        step: Option<Value>,
+    },
+    /// One of these.
+    Choices(Vec<Value>),
+}
+
+/// An output of a file.
+#[derive(Clone, PartialEq, Debug)]
+pub struct OutputInfo {
+    /// Its name; that of the file for the anonymous part.
+    pub name: Arc<str>,
+    /// Which kind.
+    pub kind: OutputKind,
+    /// The place of its name, or of the first shape without a name.
+    pub span: Span,
+    /// The text after `///`.
+    pub doc: Option<Arc<str>>,
+}
+
+/// An `export` of a file.
+#[derive(Clone, PartialEq, Debug)]
+pub struct ExportInfo {
+    /// The file's name under the output folder; `None` when it could not be evaluated, which has
+    /// been said.
+    pub file: Option<Arc<str>>,
+    /// Its place.
+    pub span: Span,
+    /// The outputs it writes as a whole.
+    pub outputs: Vec<Arc<str>>,
+}
+
+impl Global {
+    /// Whether it is seen from outside its file.
+    pub(super) fn is_open(&self) -> bool {
+        self.public || matches!(self.kind, GlobalKind::Param(_) | GlobalKind::Output(_))
+    }
+}
+
+impl Evaluator<'_> {
+    fn unit_of(&self, instance: InstanceId) -> Arc<Unit> {
+        self.instances[instance.0 as usize].unit.clone()
+    }
+
+    /// The parameters in source order.
+    pub fn params(&mut self, instance: InstanceId) -> Vec<ParamInfo> {
+        let unit = self.unit_of(instance);
+        unit.params.iter().map(|param| self.param_info(instance, &unit, param)).collect()
+    }
+
+    fn param_info(
+        &mut self,
+        instance: InstanceId,
+        unit: &Unit,
+        param: &super::unit::ParamCode,
+    ) -> ParamInfo {
+        let global = &unit.globals[param.global as usize];
+        let default = self.eval_in(instance, global.value, global.frame).ok();
+        let default = match (default, &global.ty) {
+            (Some(value), Some(ty)) => self.typed(value, Some(ty), global.name.span).ok(),
+            (default, _) => default,
+        };
+        let domain = param.domain.and_then(|code| self.eval_in(instance, code, param.frame).ok());
+        let active = param.condition.map(|code| self.eval_in(instance, code, param.frame));
+        let ty = global.ty.clone().or_else(|| default.as_ref().map(super::interpret::type_of));
+        ParamInfo {
+            name: global.name.text.clone(),
+            doc: global.doc.clone(),
+            group: param.group.clone(),
+            kind: ty.unwrap_or(Type::Any).to_string(),
+            value: self.global(instance, param.global, global.name.span).ok(),
+            default,
+            domain: domain.map_or(Domain::Any, domain_of),
+            active: !matches!(active, Some(Ok(Value::Bool(false)))),
+            span: global.name.span,
+        }
+    }
+
+    /// The outputs in source order. Shapes without a name are one part, named after the file; the
+    /// expressions they come from are evaluated here, and one that is no shape is warned of.
+    pub fn outputs(&mut self, instance: InstanceId) -> Vec<OutputInfo> {
+        let unit = self.unit_of(instance);
+        let mut outputs: Vec<OutputInfo> = vec![];
+        let mut anonymous = false;
+        for (number, global) in unit.globals.iter().enumerate() {
+            let kind = match global.kind {
+                GlobalKind::Output(kind) => kind,
+                GlobalKind::Anonymous if !anonymous && self.is_shape(instance, number as u32) => {
+                    anonymous = true;
+                    OutputKind::Part
+                }
+                GlobalKind::Anonymous => {
+                    self.is_shape(instance, number as u32);
+                    continue;
+                }
+                _ => continue,
+            };
+            let (name, doc) = (global.name.text.clone(), global.doc.clone());
+            outputs.push(OutputInfo { name, kind, span: global.name.span, doc });
+        }
+        outputs
+    }
+
+    /// Whether a top-level expression is a shape, or fails and so leaves it open.
+    fn is_shape(&mut self, instance: InstanceId, number: u32) -> bool {
+        if self.instances[instance.0 as usize].refused.is_some() {
+            return true;
+        }
+        let unit = self.unit_of(instance);
+        let at = unit.globals[number as usize].name.span;
+        let value = self.global(instance, number, at);
+        match value.and_then(|value| Ok((self.as_shape(&value, at)?, value))) {
+            Err(failure) => {
+                self.report(&failure);
+                true
+            }
+            Ok((Some(_), _)) => true,
+            Ok((None, Value::Symbol(Symbol::None))) => false,
+            Ok((None, value)) => {
+                let message = format!("this value is not used: {}", shown(&value));
+                let help = "give it a name or remove it; only shapes stand alone";
+                self.record(Diagnostic::warning(Code::Unused, message).label(at, "").help(help));
+                false
+            }
+        }
+    }
+
+    /// Evaluates one output; what goes wrong is recorded and does not touch other outputs.
+    #[expect(clippy::result_unit_err, reason = "the reason is among the diagnostics")]
+    pub fn shape_of(&mut self, instance: InstanceId, output: &str) -> Result<ShapeId, ()> {
+        let result = self.output_shape(instance, output);
+        result.map_err(|failure| self.report(&failure))
+    }
+
+    fn output_shape(&mut self, instance: InstanceId, output: &str) -> Outcome<ShapeId> {
+        self.admitted(instance)?;
+        let unit = self.unit_of(instance);
+        let named = unit.globals.iter().position(|global| {
+            matches!(global.kind, GlobalKind::Output(_)) && *global.name.text == *output
+        });
+        if let Some(number) = named {
+            let at = unit.globals[number].name.span;
+            let value = self.global(instance, number as u32, at)?;
+            return self.as_shape(&value, at)?.map_or_else(|| self.empty_solid(at), Ok);
+        }
+        let anonymous = unit.globals.iter().enumerate();
+        let anonymous = anonymous.filter(|(_, global)| global.kind == GlobalKind::Anonymous);
+        let anonymous: Vec<u32> = anonymous.map(|(number, _)| number as u32).collect();
+        if unit.stem() == output && !anonymous.is_empty() {
+            return self.anonymous_shape(instance, &unit, &anonymous);
+        }
+        let names: Vec<Arc<str>> =
+            self.outputs(instance).into_iter().map(|info| info.name).collect();
+        let message = format!("{} has no output `{output}`", unit.path);
+        let error = Diagnostic::error(Code::UnknownName, message);
+        Err(match did_you_mean(output, names.iter().map(|name| &**name)) {
+            Some((help, _)) => error.help(help),
+            None => error.note(format!("its outputs are {}", names.join(", "))),
+        }
+        .into())
+    }
+
+    fn empty_solid(&mut self, at: Span) -> Outcome<ShapeId> {
+        Ok(self.add_node(crate::shape::Node::Empty(crate::shape::Kind::Solid), at))
+    }
+
+    /// The union of all shapes without a name.
+    fn anonymous_shape(
+        &mut self,
+        instance: InstanceId,
+        unit: &Unit,
+        numbers: &[u32],
+    ) -> Outcome<ShapeId> {
+        let mut shapes = vec![];
+        for &number in numbers {
+            let at = unit.globals[number as usize].name.span;
+            let value = self.global(instance, number, at)?;
+            if self.as_shape(&value, at)?.is_none() {
+                continue;
+            }
+            if let Err(misfit) = Type::Solid.check(&self.graph, &value) {
+                let words = format!("a shape without a name is a part: it {}", misfit.words);
+                let error = Diagnostic::error(misfit.code, words).label(at, "");
+                return Err(error.help("make a solid of it with `.extrude(h)`").into());
+            }
+            shapes.extend(Type::Solid.convert(&mut self.graph, value).shape());
+        }
+        let at = unit.globals[numbers[0] as usize].name.span;
+        Ok(self.unite(shapes, crate::shape::Kind::Solid, at))
+    }
+
+    fn admitted(&self, instance: InstanceId) -> Outcome<()> {
+        match &self.instances[instance.0 as usize].refused {
+            Some(failure) => Err(failure.clone()),
+            None => Ok(()),
+        }
+    }
+
+    /// The exports in source order, their names evaluated.
+    pub fn exports(&mut self, instance: InstanceId) -> Vec<ExportInfo> {
+        let unit = self.unit_of(instance);
+        let mut exports = vec![];
+        for export in &unit.exports {
+            let global = &unit.globals[export.global as usize];
+            let named = self.admitted(instance);
+            let file = named.and_then(|()| self.eval_in(instance, export.file, global.frame));
+            if let Err(failure) = &file {
+                self.report(failure);
+            }
+            let outputs = export.outputs.iter();
+            exports.push(ExportInfo {
+                file: file.ok().map(|value| value.to_string().into()),
+                span: global.name.span,
+                outputs: outputs.map(|&n| unit.globals[n as usize].name.text.clone()).collect(),
+            });
+        }
+        exports
+    }
+
+    /// The named shapes that an export writes: one, or the fields of a record.
+    #[expect(clippy::result_unit_err, reason = "the reason is among the diagnostics")]
+    pub fn export_shapes(
+        &mut self,
+        instance: InstanceId,
+        index: usize,
+    ) -> Result<Vec<(String, ShapeId)>, ()> {
+        let result = self.export_parts(instance, index);
+        result.map_err(|failure| self.report(&failure))
+    }
+
+    fn export_parts(
+        &mut self,
+        instance: InstanceId,
+        index: usize,
+    ) -> Outcome<Vec<(String, ShapeId)>> {
+        self.admitted(instance)?;
+        let unit = self.unit_of(instance);
+        let export = unit.exports.get(index).ok_or(Failure::TOLD)?;
+        let global = &unit.globals[export.global as usize];
+        let at = unit.span(global.value);
+        let value = self.global(instance, export.global, at)?;
+        let file = self.eval_in(instance, export.file, global.frame)?.to_string();
+        if let Value::Record(record) = &value {
+            let mut parts = vec![];
+            for (name, value) in record.fields() {
+                parts.push((name.to_string(), self.export_shape(value, at, name)?));
+            }
+            return Ok(parts);
+        }
+        let name = match export.outputs[..] {
+            [output] if !matches!(value, Value::List(_)) => {
+                unit.globals[output as usize].name.text.to_string()
+            }
+            _ => file_stem(&file),
+        };
+        Ok(vec![(name.clone(), self.export_shape(&value, at, &name)?)])
+    }
+
+    fn export_shape(&mut self, value: &Value, at: Span, name: &str) -> Outcome<ShapeId> {
+        match self.as_shape(value, at)? {
+            Some(shape) => Ok(shape),
+            None => {
+                let words = format!("an export needs a shape for `{name}`, got {}", shown(value));
+                fail(Code::WrongKind, at, words)
+            }
+        }
+    }
+
+    /// The chord error in mm that the file sets, if it does. `set kernel` and `set seed` are checked
+    /// here too.
+    pub fn tolerance(&mut self, instance: InstanceId) -> Option<f64> {
+        let unit = self.unit_of(instance);
+        let mut tolerance = None;
+        for setting in &unit.settings {
+            match self.setting(instance, &unit, setting) {
+                Ok(found) => tolerance = found.or(tolerance),
+                Err(failure) => self.report(&failure),
+            }
+        }
+        tolerance
+    }
+
+    fn setting(
+        &mut self,
+        instance: InstanceId,
+        unit: &Unit,
+        setting: &super::unit::Setting,
+    ) -> Outcome<Option<f64>> {
+        let at = unit.span(setting.value);
+        match &*setting.name.text {
+            "tolerance" => {
+                let value = self.eval_in(instance, setting.value, setting.frame)?;
+                let length = Type::Number(super::Dimension::LENGTH);
+                let value = self.typed(value, Some(&length), at)?;
+                match self.plain_number(&value, at)? {
+                    mm if mm > 0.0 => Ok(Some(mm)),
+                    _ => fail(
+                        Code::Degenerate,
+                        at,
+                        format!("the tolerance must be above 0, got {value}"),
+                    ),
+                }
+            }
+            "kernel" => match self.eval_in(instance, setting.value, setting.frame)? {
+                Value::Symbol(Symbol::Exact) => Ok(None),
+                other => {
+                    let message = format!("there is no kernel {}", shown(&other));
+                    let error = Diagnostic::error(Code::UnknownName, message).label(at, "");
+                    Err(error.help("the kernels are `EXACT`").into())
+                }
+            },
+            "seed" => {
+                let value = self.eval_in(instance, setting.value, setting.frame)?;
+                self.typed(value, Some(&Type::Count), at).map(|_| None)
+            }
+            name => {
+                let message = format!("there is no setting `{name}`");
+                let error =
+                    Diagnostic::error(Code::UnknownName, message).label(setting.name.span, "");
+                Err(error.help("the settings are `tolerance`, `kernel` and `seed`").into())
+            }
+        }
+    }
+
+    /// Evaluates everything that needs no geometry, so that its errors are told.
+    pub fn check(&mut self, instance: InstanceId) {
+        self.dry = true;
+        let unit = self.unit_of(instance);
+        self.tolerance(instance);
+        if self.admitted(instance).is_ok() {
+            for (number, global) in unit.globals.iter().enumerate() {
+                if global.kind == GlobalKind::Anonymous {
+                    continue;
+                }
+                if let Err(failure) = self.global(instance, number as u32, global.name.span) {
+                    self.report(&failure);
+                }
+            }
+            for param in &unit.params {
+                if let Some(code) = param.condition
+                    && let Err(failure) =
+                        self.in_frame(instance, param.frame, |this, frame| this.truth(frame, code))
+                {
+                    self.report(&failure);
+                }
+            }
+            self.outputs(instance);
+            self.exports(instance);
+        }
+        self.dry = false;
+        debug_assert!(
+            !self.instances.iter().any(|i| i.cells.iter().any(|c| matches!(c, Cell::Busy)))
+        );
+    }
+}
+
+fn domain_of(value: Value) -> Domain {
+    match value {
+        Value::Range(range) => {
+            let number = |x| Value::Number(x, range.dimension);
+            Domain::Range {
+                min: number(range.start),
+                max: number(range.end),
+                step: range.explicit.then(|| number(range.step)),
+            }
+        }
+        Value::List(list) => Domain::Choices(list.to_vec()),
+        _ => Domain::Any,
+    }
+}
+
+/// A file's name without folder and ending.
+fn file_stem(file: &str) -> String {
+    let name = file.rsplit('/').next().unwrap_or(file);
+    name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_string()
+}

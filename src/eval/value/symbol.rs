@@ -1,0 +1,56 @@
+//! Named constants that are values of their own.
+
+use std::fmt;
+
+macro_rules! symbols {
+    ($($(#[$doc:meta])* $variant:ident = $text:literal,)*) => {
+        /// A constant that stands for itself, such as `LEFT`.
+        #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+        pub enum Symbol { $($(#[$doc])* $variant,)* }
+
+        impl Symbol {
+            /// The constant of that name.
+            pub fn from_name(name: &str) -> Option<Symbol> {
+                match name { $($text => Some(Symbol::$variant),)* _ => None }
+            }
+
+            /// How it is written.
+            pub const fn name(self) -> &'static str {
+                match self { $(Symbol::$variant => $text,)* }
+            }
+        }
+    };
+}
+
+symbols! {
+    /// No value where one is optional.
+    None = "NONE",
+    /// Towards -x; the start of a text.
+    Left = "LEFT",
+    /// The middle.
+    Center = "CENTER",
+    /// Towards +x; the end of a text.
+    Right = "RIGHT",
+    /// Towards +z; the upper edge of a text.
+    Top = "TOP",
+    /// Towards -z; the lower edge of a text.
+    Bottom = "BOTTOM",
+    /// The base line of a text.
+    Baseline = "BASELINE",
+    /// Towards -y.
+    Front = "FRONT",
+    /// Towards +y.
+    Back = "BACK",
+    /// Healing by winding number.
+    Winding = "WINDING",
+    /// The spherical projection.
+    Sphere = "SPHERE",
+    /// The exact kernel.
+    Exact = "EXACT",
+}
+
+impl fmt::Display for Symbol {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}

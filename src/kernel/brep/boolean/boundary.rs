@@ -1,0 +1,109 @@
+//! Which cells bound the result, how they are linked along edges, and which are one polygon.
+//!
+//! Around an edge where more than two cells are left, those two that bound the same wedge of the
+//! inside are linked, so solids that touch in an edge come apart.
+
+use super::{
+    cells::Complex,
+    classify::{Sides, following_side},
+    origins::{Key, Labels},
+    space::NONE,
+    union_find::Sets,
+};
+
+/// The half-edges of the result, numbered as in the complex. Those of cells whose outside is below
+/// run the other way. Entries outside the result are [`NONE`].
+pub(super) struct Boundary {
+    /// Where each half-edge starts.
+    pub origin: Vec<u32>,
+    /// What follows it around its cell.
+    pub next: Vec<u32>,
+    /// The half-edge that runs back along the same edge.
+    pub twin: Vec<u32>,
+    /// The merged polygon of each half-edge, known by one of its cells.
+    pub polygon: Vec<u32>,
+    /// What each cell is made of.
+    pub keys: Vec<Option<Key>>,
+}
+
+impl Boundary {
+    /// The boundary of the result.
+    pub fn of(complex: &Complex, sides: &Sides, labels: &mut Labels<'_>) -> Boundary {
+        let cells = 0..complex.cell_count() as u32;
+        let up: Vec<Option<bool>> = cells
+            .clone()
+            .map(|c| {
+                let at = 2 * c as usize;
+                (sides.inside[at] != sides.inside[at + 1]).then_some(sides.inside[at + 1])
+            })
+            .collect();
+        let keys: Vec<Option<Key>> =
+            cells.map(|c| up[c as usize].map(|up| labels.key(complex, c, up))).collect();
+        let (origin, next) = directed(complex, &up);
+        let twin = twins(complex, sides, &up);
+        let polygon = polygons(complex, &twin, &keys);
+        Boundary { origin, next, twin, polygon, keys }
+    }
+
+    /// Whether a half-edge runs inside a merged polygon.
+    pub fn is_inner(&self, half: u32) -> bool {
+        self.polygon[half as usize] == self.polygon[self.twin[half as usize] as usize]
+    }
+
+    /// The half-edges that bound merged polygons.
+    pub fn outer(&self) -> impl Iterator<Item = u32> + '_ {
+        let halves = 0..self.twin.len() as u32;
+        halves.filter(|&h| self.twin[h as usize] != NONE && !self.is_inner(h))
+    }
+}
+
+/// Origins and successors of half-edges, turned around in cells that face down.
+fn directed(complex: &Complex, up: &[Option<bool>]) -> (Vec<u32>, Vec<u32>) {
+    let count = complex.halves.len();
+    let (mut origin, mut next) = (vec![NONE; count], vec![NONE; count]);
+    for (number, half) in (0u32..).zip(&complex.halves) {
+        match up[half.cell as usize] {
+            Some(true) => {
+                origin[number as usize] = half.origin;
+                next[number as usize] = half.next;
+            }
+            Some(false) => {
+                origin[number as usize] = complex.target(number);
+                next[half.next as usize] = number;
+            }
+            None => {}
+        }
+    }
+    (origin, next)
+}
+
+fn twins(complex: &Complex, sides: &Sides, up: &[Option<bool>]) -> Vec<u32> {
+    let mut twin = vec![NONE; complex.halves.len()];
+    let mut radial = sides.radial.iter().peekable();
+    let mut kept = vec![];
+    for edge in 0..complex.edge_count() {
+        let sorted = radial.next_if(|r| r.0 == edge as u32);
+        let around = sorted.map_or(complex.around(edge), |r| &r.1).iter().copied();
+        kept.clear();
+        kept.extend(around.filter(|&h| up[complex.halves[h as usize].cell as usize].is_some()));
+        for (i, &half) in kept.iter().enumerate() {
+            if sides.inside[following_side(complex, half) as usize] {
+                let next = kept[(i + 1) % kept.len()];
+                twin[half as usize] = next;
+                twin[next as usize] = half;
+            }
+        }
+    }
+    twin
+}
+
+fn polygons(complex: &Complex, twin: &[u32], keys: &[Option<Key>]) -> Vec<u32> {
+    let cell = |half: u32| complex.halves[half as usize].cell;
+    let mut sets = Sets::new(complex.cell_count());
+    for (half, &back) in (0u32..).zip(twin) {
+        if back != NONE && keys[cell(half) as usize] == keys[cell(back) as usize] {
+            sets.join(cell(half), cell(back));
+        }
+    }
+    complex.halves.iter().map(|half| sets.find(half.cell)).collect()
+}

@@ -1,0 +1,210 @@
+//! The cell complex: every piece of every facet, and how the pieces meet along edges.
+//!
+//! A cell is a polygon, possibly with holes, in one plane; it has an upper side, where its normal
+//! points, and a lower one. The normal is that of its plane, or the facet's own for a facet that
+//! nothing touches.
+
+use rustc_hash::FxHashMap;
+
+use super::{
+    facet::Facets,
+    space::{NONE, Space},
+};
+
+/// A polygon that no facet crosses.
+struct Cell {
+    plane: u32,
+    /// One past its last entry of `covers`.
+    cover_end: u32,
+}
+
+/// One step along the boundary of a cell, the cell on its left.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Half {
+    /// Where it starts.
+    pub origin: u32,
+    /// What follows around the cell.
+    pub next: u32,
+    /// The plane that, with the cell's, holds the line; [`NONE`] in untouched facets.
+    pub support: u32,
+    /// The cell.
+    pub cell: u32,
+    /// The edge it runs along, once the complex is finished.
+    pub edge: u32,
+}
+
+/// All cells of an operation.
+#[derive(Default)]
+pub(super) struct Complex {
+    cells: Vec<Cell>,
+    /// Facets over each cell, and how often: positive when the facet faces up.
+    covers: Vec<(u32, i32)>,
+    /// The half-edges of all cells, a cell's together.
+    pub halves: Vec<Half>,
+    loop_start: u32,
+    /// The half-edges along every edge: `incident[edge_ends[e-1]..edge_ends[e]]`.
+    incident: Vec<u32>,
+    edge_ends: Vec<u32>,
+}
+
+impl Complex {
+    /// Begins a cell; its loops follow.
+    pub fn begin_cell(&mut self, plane: u32, cover: impl Iterator<Item = (u32, i32)>) {
+        self.covers.extend(cover);
+        self.cells.push(Cell { plane, cover_end: self.covers.len() as u32 });
+    }
+
+    /// Adds a step of a loop.
+    pub fn push_half(&mut self, origin: u32, support: u32) {
+        let (next, cell) = (self.halves.len() as u32 + 1, self.cells.len() as u32 - 1);
+        self.halves.push(Half { origin, next, support, cell, edge: 0 });
+    }
+
+    /// Closes a loop.
+    pub fn end_loop(&mut self) {
+        let end = self.halves.len() as u32;
+        self.halves[end as usize - 1].next = self.loop_start;
+        self.loop_start = end;
+    }
+
+    /// Adds a facet that nothing touches.
+    pub fn add_whole(&mut self, facet: u32, facets: &Facets) {
+        self.begin_cell(NONE, [(facet, 1)].into_iter());
+        for corners in facets.loops(facet) {
+            corners.iter().for_each(|&corner| self.push_half(corner, NONE));
+            self.end_loop();
+        }
+    }
+
+    /// The number of cells.
+    pub fn cell_count(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// The facets over a cell, and how often; positive when the facet faces up.
+    pub fn cover(&self, cell: u32) -> &[(u32, i32)] {
+        let start = if cell == 0 { 0 } else { self.cells[cell as usize - 1].cover_end };
+        &self.covers[start as usize..self.cells[cell as usize].cover_end as usize]
+    }
+
+    /// The plane of a cell, [`NONE`] in untouched facets.
+    pub fn plane(&self, cell: u32) -> u32 {
+        self.cells[cell as usize].plane
+    }
+
+    /// A cell's normal: a plane and whether the normal is against the plane's.
+    pub fn normal(&self, cell: u32, facets: &mut Facets, space: &mut Space) -> (u32, bool) {
+        match self.plane(cell) {
+            NONE => facets.plane(self.cover(cell)[0].0, space),
+            plane => (plane, false),
+        }
+    }
+
+    /// Where a half-edge ends.
+    pub fn target(&self, half: u32) -> u32 {
+        self.halves[self.halves[half as usize].next as usize].origin
+    }
+
+    /// The number of edges.
+    pub fn edge_count(&self) -> usize {
+        self.edge_ends.len()
+    }
+
+    /// The half-edges along an edge.
+    pub fn around(&self, edge: usize) -> &[u32] {
+        let start = if edge == 0 { 0 } else { self.edge_ends[edge - 1] };
+        &self.incident[start as usize..self.edge_ends[edge] as usize]
+    }
+
+    /// Whether a half-edge runs from the smaller point number to the larger.
+    pub fn is_forward(&self, half: u32) -> bool {
+        self.halves[half as usize].origin < self.target(half)
+    }
+
+    /// Finds the half-edges that run along the same edges.
+    pub fn finish(&mut self) {
+        let mut numbers: FxHashMap<u64, u32> = FxHashMap::default();
+        numbers.reserve(self.halves.len() / 2);
+        let mut counts: Vec<u32> = vec![];
+        for half in 0..self.halves.len() {
+            let (a, b) = (self.halves[half].origin, self.target(half as u32));
+            let key = u64::from(a.min(b)) << 32 | u64::from(a.max(b));
+            let edge = *numbers.entry(key).or_insert(counts.len() as u32);
+            if edge as usize == counts.len() {
+                counts.push(0);
+            }
+            counts[edge as usize] += 1;
+            self.halves[half].edge = edge;
+        }
+        let mut sum = 0;
+        let mut fill = Vec::with_capacity(counts.len());
+        for count in &mut counts {
+            fill.push(sum);
+            sum += *count;
+            *count = sum;
+        }
+        self.edge_ends = counts;
+        self.incident = vec![0; self.halves.len()];
+        for (number, half) in (0u32..).zip(&self.halves) {
+            let slot = &mut fill[half.edge as usize];
+            self.incident[*slot as usize] = number;
+            *slot += 1;
+        }
+    }
+
+    /// Sorts half-edges along one edge by the angle of their cells around it, counter-clockwise seen
+    /// against the direction from its smaller point to its larger.
+    pub fn sort_radially(&self, around: &mut [u32], facets: &mut Facets, space: &mut Space) {
+        let half = around[0];
+        let (mut a, mut b) = (self.halves[half as usize].origin, self.target(half));
+        if a > b {
+            (a, b) = (b, a);
+        }
+        let (axis, sign) = space.direction(a, b);
+        let mut spokes: Vec<Spoke> =
+            around.iter().map(|&half| self.spoke(half, facets, space)).collect();
+        let first = spokes[0];
+        spokes.sort_by(|p, q| {
+            let part = |s: &Spoke| first.part(s, axis, sign);
+            part(p).cmp(&part(q)).then_with(|| q.turn(p, axis, sign).cmp(&0))
+        });
+        for (slot, spoke) in around.iter_mut().zip(spokes) {
+            *slot = spoke.half;
+        }
+    }
+
+    /// The direction of a cell seen from one of its edges, turned by a right angle about the edge.
+    pub fn spoke(&self, half: u32, facets: &mut Facets, space: &mut Space) -> Spoke {
+        let (plane, turned) = self.normal(self.halves[half as usize].cell, facets, space);
+        let normal = space.plane(plane).normal;
+        let against = turned == self.is_forward(half);
+        Spoke { half, normal: if against { normal.map(|c| -c) } else { normal } }
+    }
+}
+
+/// A cell seen from one of its edges.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spoke {
+    /// The half-edge.
+    pub half: u32,
+    /// Its cell lies where this vector, turned by -90 degrees about the edge, points.
+    normal: [i64; 3],
+}
+
+impl Spoke {
+    /// The sign of the turn to another spoke; `sign` is that of the edge's direction along `axis`.
+    pub fn turn(&self, other: &Spoke, axis: usize, sign: i32) -> i32 {
+        let cross = crate::geom::predicates::cross(self.normal, other.normal);
+        cross[axis].signum() as i32 * sign
+    }
+
+    /// 0 in the same direction, 1 less than half a turn on, 2 opposite, 3 beyond.
+    fn part(&self, other: &Spoke, axis: usize, sign: i32) -> i32 {
+        match self.turn(other, axis, sign) {
+            1 => 1,
+            -1 => 3,
+            _ if crate::geom::predicates::dot(self.normal, other.normal) > 0 => 0,
+            _ => 2,
+        }
+    }
+}

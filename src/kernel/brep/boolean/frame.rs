@@ -1,0 +1,177 @@
+//! Hoisting: in which frame an operation is evaluated, and which leaves take part.
+//!
+//! A set operation commutes with every placement. So placements are moved out of it as far as that
+//! helps exactness: the operation is evaluated in the frame whose linear part most of its leaves
+//! share, where their faces are what the modeller wrote, and the result is placed afterwards.
+//! Nested operations that stand to that frame by a translation, a quarter turn or an axis mirror
+//! join the same arrangement; one that stands otherwise is evaluated first, in its own frame.
+
+use std::sync::Arc;
+
+use glam::{DMat3, DVec3};
+
+use super::{BooleanError, Tree, evaluate_operation, expression::Expression};
+use crate::{geom::Placement, kernel::brep::Polyhedron};
+
+/// How far a relative linear part, a product of a matrix and an inverse, may be from a signed axis
+/// permutation and still mean one: rotations by odd angles differ from it by far more, rounding by
+/// far less.
+const PERMUTATION: f64 = 1e-13;
+
+/// A solid that takes part in an operation.
+pub(super) struct Leaf {
+    /// The solid in its own frame.
+    pub solid: Arc<Polyhedron>,
+    /// From its own frame to the frame of the operation.
+    pub local: Placement,
+    /// From its own frame to where the result stands.
+    pub full: Placement,
+}
+
+/// An operation made flat: one arrangement of many leaves.
+pub(super) struct Plan {
+    /// The leaves, in the order of the source.
+    pub leaves: Vec<Leaf>,
+    /// What the operation says about them.
+    pub expression: Expression,
+    /// From the frame of the operation to where the result stands.
+    pub frame: Placement,
+    /// Largest movement of a corner in operations evaluated on the way, mm.
+    pub snap: f64,
+}
+
+/// Flattens an operation node that stands at `outer`.
+pub(super) fn plan(tree: &Tree, outer: &Placement) -> Result<Plan, BooleanError> {
+    let linear = common_linear(tree);
+    let (linear, inverse) = match Placement::new(linear, DVec3::ZERO).inverse() {
+        Some(inverse) => (linear, inverse),
+        None => (DMat3::IDENTITY, Placement::IDENTITY),
+    };
+    let here = Placement::new(linear, DVec3::ZERO);
+    let mut walk = Walk { inverse, outer: *outer, leaves: vec![], snap: 0.0 };
+    let expression = walk.operation(tree, &Placement::IDENTITY)?;
+    let Walk { leaves, snap, .. } = walk;
+    Ok(Plan { leaves, expression, frame: outer.after(&here), snap })
+}
+
+/// The linear part that most leaves share, the first of them when several do.
+fn common_linear(tree: &Tree) -> DMat3 {
+    let mut found: Vec<(DMat3, usize)> = vec![];
+    tally(tree, &Placement::IDENTITY, &mut found);
+    let most = found.iter().map(|f| f.1).max().unwrap_or(0);
+    found.iter().find(|f| f.1 == most).map_or(DMat3::IDENTITY, |f| f.0)
+}
+
+fn tally(tree: &Tree, placement: &Placement, found: &mut Vec<(DMat3, usize)>) {
+    match tree {
+        Tree::Leaf(_) => match found.iter_mut().find(|f| f.0 == placement.linear()) {
+            Some(entry) => entry.1 += 1,
+            None => found.push((placement.linear(), 1)),
+        },
+        Tree::Placed(inner, child) => tally(child, &placement.after(inner), found),
+        Tree::Union(parts) | Tree::Difference(parts) | Tree::Intersection(parts) => {
+            parts.iter().for_each(|part| tally(part, placement, found));
+        }
+    }
+}
+
+/// The walk that collects leaves.
+struct Walk {
+    /// From the frame of the operation node to the frame of evaluation.
+    inverse: Placement,
+    outer: Placement,
+    leaves: Vec<Leaf>,
+    snap: f64,
+}
+
+impl Walk {
+    fn operation(&mut self, tree: &Tree, at: &Placement) -> Result<Expression, BooleanError> {
+        Ok(match tree {
+            Tree::Leaf(solid) => self.leaf(solid.clone(), at),
+            Tree::Placed(inner, child) => self.part(child, &at.after(inner))?,
+            Tree::Union(parts) => Expression::Union(self.parts(parts, at)?),
+            Tree::Intersection(parts) => Expression::Intersection(self.parts(parts, at)?),
+            Tree::Difference(parts) => Expression::Difference(self.parts(parts, at)?),
+        })
+    }
+
+    fn parts(&mut self, parts: &[Tree], at: &Placement) -> Result<Vec<Expression>, BooleanError> {
+        parts.iter().map(|part| self.part(part, at)).collect()
+    }
+
+    /// A part that stands at `at`: joined in if that keeps the lattice, else evaluated on its own.
+    fn part(&mut self, tree: &Tree, at: &Placement) -> Result<Expression, BooleanError> {
+        let whole = matches!(tree, Tree::Leaf(_) | Tree::Placed(..));
+        if whole || keeps_lattice(&self.local(at)) {
+            return self.operation(tree, at);
+        }
+        let evaluated = evaluate_operation(tree, &Placement::IDENTITY)?;
+        self.snap = self.snap.max(evaluated.snap);
+        Ok(self.leaf(Arc::new(evaluated.solid), at))
+    }
+
+    fn leaf(&mut self, solid: Arc<Polyhedron>, at: &Placement) -> Expression {
+        let (local, full) = (self.local(at), self.outer.after(at));
+        self.leaves.push(Leaf { solid, local, full });
+        Expression::Leaf(self.leaves.len() as u32 - 1)
+    }
+
+    fn local(&self, at: &Placement) -> Placement {
+        if self.inverse.is_identity() {
+            return *at;
+        }
+        cleaned(&self.inverse.after(at))
+    }
+}
+
+/// The placement with a linear part that is nearly a signed axis permutation made exactly one.
+fn cleaned(placement: &Placement) -> Placement {
+    let linear = placement.linear().to_cols_array();
+    let near = linear.map(f64::round);
+    let close = linear.iter().zip(near).all(|(a, b)| (a - b).abs() <= PERMUTATION);
+    let rounded = DMat3::from_cols_array(&near);
+    if close && is_permutation(&rounded) {
+        Placement::new(rounded, placement.offset())
+    } else {
+        *placement
+    }
+}
+
+fn keeps_lattice(placement: &Placement) -> bool {
+    is_permutation(&placement.linear())
+}
+
+fn is_permutation(linear: &DMat3) -> bool {
+    let ones = |v: DVec3| v.to_array().iter().filter(|c| c.abs() == 1.0).count();
+    let zeros = |v: DVec3| v.to_array().iter().filter(|&&c| c == 0.0).count();
+    let single = |v: DVec3| ones(v) == 1 && zeros(v) == 2;
+    let rows = linear.transpose();
+    [linear.x_axis, linear.y_axis, linear.z_axis, rows.x_axis, rows.y_axis, rows.z_axis]
+        .into_iter()
+        .all(single)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quarter_turns_and_mirrors_keep_the_lattice() {
+        let turn = DMat3::from_cols(DVec3::Y, -DVec3::X, DVec3::Z);
+        assert!(is_permutation(&turn));
+        assert!(is_permutation(&DMat3::from_diagonal(DVec3::new(1.0, -1.0, 1.0))));
+        assert!(!is_permutation(&DMat3::from_diagonal(DVec3::new(1.0, 2.0, 1.0))));
+        assert!(!is_permutation(&DMat3::from_cols(DVec3::X, DVec3::X, DVec3::Z)));
+    }
+
+    #[test]
+    fn nested_operations_under_translations_are_flattened() {
+        let leaf = || Tree::Leaf(Arc::new(Polyhedron::empty()));
+        let inner = Tree::Union(vec![leaf(), leaf()]);
+        let moved = Tree::Placed(Placement::translation(DVec3::X), Box::new(inner));
+        let tree = Tree::Difference(vec![leaf(), moved]);
+        let plan = plan(&tree, &Placement::IDENTITY).expect("a plan");
+        assert_eq!(plan.leaves.len(), 3);
+        assert_eq!(plan.leaves[2].local.offset(), DVec3::X);
+    }
+}

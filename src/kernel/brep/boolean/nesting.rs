@@ -1,0 +1,193 @@
+//! Which boundary walks of a plane's arrangement bound the same cell.
+//!
+//! Every connected part of the arrangement has one walk around its outside; it bounds the cell that
+//! the part lies in. That cell is found straight below the part's first point.
+
+use std::cmp::Ordering;
+
+use super::{
+    arrange::{Edge, Graph},
+    hierarchy::{Bounds, Hierarchy},
+    space::Space,
+    union_find::Sets,
+};
+
+/// The cells of an arrangement; number 0 is the unbounded one.
+pub(super) struct Cells {
+    /// The walks that bound each cell.
+    pub walks: Vec<Vec<u32>>,
+    /// The cell of each walk.
+    pub of_walk: Vec<u32>,
+}
+
+impl Cells {
+    /// The half-edges around a cell.
+    pub fn halves(&self, cell: usize, graph: &Graph) -> Vec<u32> {
+        let mut halves = vec![];
+        for &walk in &self.walks[cell] {
+            let start = graph.walks[walk as usize];
+            let mut half = start;
+            loop {
+                halves.push(half);
+                half = graph.next[half as usize];
+                if half == start {
+                    break;
+                }
+            }
+        }
+        halves
+    }
+}
+
+/// A connected part of the arrangement.
+struct Part {
+    /// Its first point, left to right, then upwards.
+    first: u32,
+    /// The walk around its outside.
+    outside: u32,
+}
+
+/// Groups the walks of an arrangement into cells.
+pub(super) fn cells(graph: &Graph, space: &Space) -> Cells {
+    let mut parts = parts(graph, space);
+    parts.sort_by(|p, q| order(p.first, q.first, graph, space));
+    let mut of_walk = vec![u32::MAX; graph.walks.len()];
+    for part in &parts {
+        of_walk[part.outside as usize] = 0;
+    }
+    let mut count = 1;
+    for cell in of_walk.iter_mut().filter(|c| **c == u32::MAX) {
+        *cell = count;
+        count += 1;
+    }
+    if parts.len() > 1 {
+        let below = Below::new(graph, space);
+        for part in &parts {
+            let around = below.walk(part.first, graph, space);
+            of_walk[part.outside as usize] = around.map_or(0, |walk| of_walk[walk as usize]);
+        }
+    }
+    let mut walks = vec![vec![]; count as usize];
+    for (walk, &cell) in (0u32..).zip(&of_walk) {
+        walks[cell as usize].push(walk);
+    }
+    Cells { walks, of_walk }
+}
+
+/// The order of points from left to right, then upwards.
+fn order(p: u32, q: u32, graph: &Graph, space: &Space) -> Ordering {
+    let [x, y] = graph.axes;
+    space.compare(p, q, x).then_with(|| space.compare(p, q, y))
+}
+
+fn parts(graph: &Graph, space: &Space) -> Vec<Part> {
+    let mut sets = Sets::new(graph.points.len());
+    for edge in &graph.edges {
+        sets.join(graph.place(edge.a) as u32, graph.place(edge.b) as u32);
+    }
+    let mut first: Vec<Option<u32>> = vec![None; graph.points.len()];
+    for (place, &point) in (0u32..).zip(&graph.points) {
+        let slot = &mut first[sets.find(place) as usize];
+        if slot.is_none_or(|best| order(point, best, graph, space) == Ordering::Less) {
+            *slot = Some(point);
+        }
+    }
+    first
+        .into_iter()
+        .flatten()
+        .map(|first| {
+            // All its edges lead to the right; left of the steepest one is the outside.
+            let fan = graph.fan(graph.place(first));
+            Part { first, outside: graph.walk[fan[fan.len() - 1] as usize] }
+        })
+        .collect()
+}
+
+/// Finds what lies straight below a point.
+struct Below {
+    tree: Hierarchy,
+}
+
+impl Below {
+    fn new(graph: &Graph, space: &Space) -> Below {
+        Below { tree: Hierarchy::new(graph.edges.iter().map(|e| space.bounds(e.a, e.b))) }
+    }
+
+    /// The walk above the nearest edge straight below a point, not counting edges through it.
+    fn walk(&self, point: u32, graph: &Graph, space: &Space) -> Option<u32> {
+        let mut bounds = space.bounds(point, point);
+        let [x, y] = graph.axes;
+        let across = 3 - x - y;
+        bounds = Bounds {
+            min: std::array::from_fn(|i| if i == x { bounds.min[i] } else { i32::MIN }),
+            max: std::array::from_fn(|i| if i == across { i32::MAX } else { bounds.max[i] }),
+        };
+        let mut best: Option<Span> = None;
+        self.tree.overlapping(&bounds, |edge| {
+            let Some(span) = Span::of(edge, graph, space) else { return };
+            if span.covers(point, graph, space)
+                && span.is_below(point, graph, space)
+                && best.as_ref().is_none_or(|b| span.is_above(b, graph, space))
+            {
+                best = Some(span);
+            }
+        });
+        best.map(|span| graph.walk[span.half as usize])
+    }
+}
+
+/// An edge seen from left to right.
+struct Span {
+    half: u32,
+    left: u32,
+    right: u32,
+}
+
+impl Span {
+    /// `None` for an upright edge.
+    fn of(edge: u32, graph: &Graph, space: &Space) -> Option<Span> {
+        let Edge { a, b, .. } = graph.edges[edge as usize];
+        match space.compare(a, b, graph.axes[0]) {
+            Ordering::Less => Some(Span { half: 2 * edge, left: a, right: b }),
+            Ordering::Greater => Some(Span { half: 2 * edge + 1, left: b, right: a }),
+            Ordering::Equal => None,
+        }
+    }
+
+    fn covers(&self, point: u32, graph: &Graph, space: &Space) -> bool {
+        let x = graph.axes[0];
+        space.compare(self.left, point, x) != Ordering::Greater
+            && space.compare(point, self.right, x) == Ordering::Less
+    }
+
+    /// 1 for a point above the line of the edge, -1 below. Left of a line along n x m, where n is
+    /// the plane's normal and m the support's, is where m points away from.
+    fn side(&self, point: u32, graph: &Graph, space: &Space) -> i32 {
+        let edge = &graph.edges[self.half as usize / 2];
+        let along = edge.along == (self.half & 1 == 0);
+        let side =
+            if point == edge.a || point == edge.b { 0 } else { space.side(point, edge.support) };
+        if along { -side } else { side }
+    }
+
+    fn is_below(&self, point: u32, graph: &Graph, space: &Space) -> bool {
+        self.side(point, graph, space) > 0
+    }
+
+    /// Whether it runs above another edge, where both cover one place and do not cross.
+    fn is_above(&self, other: &Span, graph: &Graph, space: &Space) -> bool {
+        let x = graph.axes[0];
+        if space.compare(self.left, other.left, x) == Ordering::Less {
+            return !other.is_above(self, graph, space);
+        }
+        match other.side(self.left, graph, space) {
+            0 => {}
+            side => return side > 0,
+        }
+        if space.compare(self.right, other.right, x) == Ordering::Greater {
+            self.side(other.right, graph, space) < 0
+        } else {
+            other.side(self.right, graph, space) > 0
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! The outlines of merged polygons: loops, the vertices where they meet, and which of those stay.
+//!
+//! Around a point every fan of linked polygons gets a vertex of its own, so solids that touch in a
+//! point come apart. A vertex where only two polygons meet, along one straight line, is dropped.
+
+use rustc_hash::FxHashMap;
+
+use super::{
+    boundary::Boundary,
+    cells::Complex,
+    origins::Flat,
+    space::{NONE, Space},
+    union_find::Sets,
+};
+use crate::geom::predicates::{cross, minus};
+
+/// Loops of half-edges.
+pub(super) struct Outline {
+    /// Every loop with the polygon it bounds; loops of one polygon follow each other.
+    pub loops: Vec<(u32, Vec<u32>)>,
+    /// What follows a half-edge in its loop.
+    pub next: Vec<u32>,
+    /// What comes before it.
+    before: Vec<u32>,
+    /// The vertex at its start, known by one of the half-edges that leave it.
+    pub vertex: Vec<u32>,
+    /// The loop it belongs to.
+    of_half: Vec<u32>,
+}
+
+impl Outline {
+    /// Traces the outlines.
+    pub fn of(boundary: &Boundary) -> Outline {
+        let count = boundary.twin.len();
+        let mut loops = loops(boundary);
+        loops.sort_by_key(|l| l.0);
+        let mut outline = Outline {
+            loops,
+            next: vec![NONE; count],
+            before: vec![NONE; count],
+            vertex: vec![NONE; count],
+            of_half: vec![NONE; count],
+        };
+        for (number, (_, halves)) in (0u32..).zip(&outline.loops) {
+            for (i, &half) in halves.iter().enumerate() {
+                let next = halves[(i + 1) % halves.len()];
+                outline.next[half as usize] = next;
+                outline.before[next as usize] = half;
+                outline.of_half[half as usize] = number;
+            }
+        }
+        let mut sets = Sets::new(count);
+        for half in boundary.outer() {
+            sets.join(half, outline.next[boundary.twin[half as usize] as usize]);
+        }
+        for half in boundary.outer() {
+            outline.vertex[half as usize] = sets.find(half);
+        }
+        outline
+    }
+
+    /// Whether each vertex is dropped, by the half-edge that stands for it.
+    pub fn dropped(&self, boundary: &Boundary, complex: &Complex, space: &Space) -> Vec<bool> {
+        let mut leaving: FxHashMap<u32, u32> = FxHashMap::default();
+        for half in boundary.outer() {
+            *leaving.entry(self.vertex[half as usize]).or_default() += 1;
+        }
+        let mut dropped = vec![false; boundary.twin.len()];
+        let straight = Straight { outline: self, boundary, complex, space };
+        for half in boundary.outer() {
+            let vertex = self.vertex[half as usize];
+            if vertex == half && leaving[&vertex] == 2 && straight.holds(half) {
+                dropped[vertex as usize] = true;
+            }
+        }
+        self.keep_triangles(&mut dropped);
+        dropped
+    }
+
+    /// Takes back what would leave a loop with fewer than three corners.
+    fn keep_triangles(&self, dropped: &mut [bool]) {
+        loop {
+            let is_kept = |dropped: &[bool], h: u32| !dropped[self.vertex[h as usize] as usize];
+            let thin: Vec<&Vec<u32>> = self
+                .loops
+                .iter()
+                .map(|l| &l.1)
+                .filter(|l| l.iter().filter(|&&h| is_kept(dropped, h)).count() < 3)
+                .filter(|l| l.iter().any(|&h| !is_kept(dropped, h)))
+                .collect();
+            if thin.is_empty() {
+                return;
+            }
+            for &half in thin.into_iter().flatten() {
+                dropped[self.vertex[half as usize] as usize] = false;
+            }
+        }
+    }
+}
+
+/// The loops around all merged polygons, without a point met twice.
+fn loops(boundary: &Boundary) -> Vec<(u32, Vec<u32>)> {
+    let mut done = vec![false; boundary.twin.len()];
+    let mut loops = vec![];
+    for start in boundary.outer() {
+        if done[start as usize] {
+            continue;
+        }
+        let (mut walk, mut half) = (vec![], start);
+        while !done[half as usize] {
+            done[half as usize] = true;
+            walk.push(half);
+            half = boundary.next[half as usize];
+            while boundary.is_inner(half) {
+                half = boundary.next[boundary.twin[half as usize] as usize];
+            }
+        }
+        let polygon = boundary.polygon[start as usize];
+        loops.extend(simple(walk, &boundary.origin).into_iter().map(|l| (polygon, l)));
+    }
+    loops
+}
+
+/// Cuts a walk that meets points more than once into loops that do not.
+fn simple(walk: Vec<u32>, origin: &[u32]) -> Vec<Vec<u32>> {
+    let mut points: Vec<u32> = walk.iter().map(|&h| origin[h as usize]).collect();
+    points.sort_unstable();
+    points.dedup();
+    if points.len() == walk.len() {
+        return vec![walk];
+    }
+    let (mut loops, mut open) = (vec![], Vec::<u32>::new());
+    let mut place: FxHashMap<u32, usize> = FxHashMap::default();
+    for half in walk {
+        let point = origin[half as usize];
+        if let Some(&at) = place.get(&point) {
+            let closed = open.split_off(at);
+            for &half in &closed {
+                place.remove(&origin[half as usize]);
+            }
+            loops.push(closed);
+        }
+        place.insert(point, open.len());
+        open.push(half);
+    }
+    loops.push(open);
+    loops
+}
+
+/// How far, in steps, a corner may be from the straight line that two faces share when snapping has
+/// bent one of them: each end of a snapped edge moves by less than one step.
+const BENT: f64 = 2.0;
+
+/// The question whether a vertex of two polygons lies on one straight line with its neighbours.
+struct Straight<'a> {
+    outline: &'a Outline,
+    boundary: &'a Boundary,
+    complex: &'a Complex,
+    space: &'a Space,
+}
+
+impl Straight<'_> {
+    fn holds(&self, half: u32) -> bool {
+        let before = self.outline.before[half as usize];
+        let twins = [half, before].map(|h| self.boundary.twin[h as usize]);
+        let polygon = |h: u32| self.boundary.polygon[h as usize];
+        if polygon(twins[0]) != polygon(twins[1]) {
+            return false;
+        }
+        let flat = |h: u32| {
+            let cell = self.complex.halves[h as usize].cell;
+            self.boundary.keys[cell as usize].map(|k| k.flat)
+        };
+        let (mine, other) = (flat(half), flat(twins[0]));
+        if mine == other {
+            return self.exactly(half, before, twins);
+        }
+        let exact = |f: Option<Flat>| matches!(f, Some(Flat::Exact(_)));
+        (exact(mine) && exact(other)) || self.nearly(half, before)
+    }
+
+    /// The points before, at and after a half-edge's start.
+    fn points(&self, half: u32, before: u32) -> [u32; 3] {
+        let after = self.outline.next[half as usize];
+        [before, half, after].map(|h| self.boundary.origin[h as usize])
+    }
+
+    /// By the plane that holds one of the edges, or by integers.
+    fn exactly(&self, half: u32, before: u32, twins: [u32; 2]) -> bool {
+        let [a, b, c] = self.points(half, before);
+        for (edges, other) in [([half, twins[0]], a), ([before, twins[1]], c)] {
+            for edge in edges {
+                let support = self.complex.halves[edge as usize].support;
+                if support != NONE {
+                    return self.space.side(other, support) == 0;
+                }
+            }
+        }
+        match [a, b, c].map(|p| self.space.lattice_point(p)) {
+            [Some(a), Some(b), Some(c)] => cross(minus(b, a), minus(c, b)) == [0; 3],
+            _ => false,
+        }
+    }
+
+    fn nearly(&self, half: u32, before: u32) -> bool {
+        let [a, b, c] =
+            self.points(half, before).map(|p| glam::DVec3::from_array(self.space.near(p)));
+        let (arm, chord) = (b - a, c - a);
+        arm.dot(chord) > 0.0
+            && (c - b).dot(chord) > 0.0
+            && arm.cross(chord).length() <= BENT * chord.length()
+    }
+}

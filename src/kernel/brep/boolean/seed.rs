@@ -1,0 +1,359 @@
+//! Where each connected component of the complex stands: its unbounded region, and the winding
+//! numbers of the other components around it.
+//!
+//! The unbounded region is found at the component's first point, where everything lies to one side;
+//! the winding numbers by the spherical projection (Nagashima 1986) with exact triple products.
+//! Where the point touches the other component, a ray from just beyond the point counts crossings
+//! exactly instead.
+
+use std::cmp::Ordering;
+
+use super::{
+    cells::Complex,
+    facet::Facets,
+    hierarchy::{Bounds, Hierarchy},
+    polygon,
+    space::Space,
+    union_find::Sets,
+};
+use crate::geom::{
+    predicates::{Int3, cross, dot, minus},
+    wide::Wide,
+};
+
+/// What is known of a component.
+pub(super) struct Seed {
+    /// A side of a cell that faces the unbounded region.
+    pub side: u32,
+    /// The winding numbers, by leaf, of what surrounds the component.
+    pub around: Vec<(u32, i32)>,
+}
+
+/// The facets of one leaf in one component: a closed surface.
+struct Shell {
+    component: u32,
+    leaf: u32,
+    facets: Vec<u32>,
+    bounds: Bounds,
+}
+
+/// The seeds of all components.
+pub(super) fn seeds(
+    complex: &Complex,
+    components: &mut Sets,
+    radial: &[(u32, Vec<u32>)],
+    facets: &mut Facets,
+    space: &mut Space,
+) -> Vec<Seed> {
+    let of_cell: Vec<u32> =
+        (0..complex.cell_count() as u32).map(|cell| components.find(cell)).collect();
+    let firsts = first_points(complex, &of_cell, space);
+    let shells = shells(complex, &of_cell, facets);
+    let tree = Hierarchy::new(shells.iter().map(|s| s.bounds));
+    let fans = fans(complex, &of_cell, &firsts);
+    let mut seeds = vec![];
+    for ((component, point), halves) in firsts.into_iter().zip(fans) {
+        let side = unbounded_side(complex, point, &halves, radial, facets, space);
+        let place = beyond(complex, point, halves[0], facets, space);
+        let around = around(component, place, &shells, &tree, facets, space);
+        seeds.push(Seed { side, around });
+    }
+    seeds
+}
+
+/// The first lattice point of every component, by x, then y, then z. It is the first of all its
+/// points, since the cells lie within the facets.
+fn first_points(complex: &Complex, of_cell: &[u32], space: &Space) -> Vec<(u32, u32)> {
+    let mut best: Vec<Option<(Int3, u32)>> = vec![None; of_cell.len()];
+    for half in &complex.halves {
+        let Some(at) = space.lattice_point(half.origin) else { continue };
+        let slot = &mut best[of_cell[half.cell as usize] as usize];
+        if slot.is_none_or(|b| at < b.0) {
+            *slot = Some((at, half.origin));
+        }
+    }
+    (0u32..).zip(best).filter_map(|(component, b)| Some((component, b?.1))).collect()
+}
+
+/// For each component the half-edges of its cells that start or end at its first point.
+fn fans(complex: &Complex, of_cell: &[u32], firsts: &[(u32, u32)]) -> Vec<Vec<u32>> {
+    let mut place = vec![u32::MAX; of_cell.len()];
+    for (i, &(component, _)) in (0u32..).zip(firsts) {
+        place[component as usize] = i;
+    }
+    let mut fans = vec![vec![]; firsts.len()];
+    for (number, half) in (0u32..).zip(&complex.halves) {
+        let i = place[of_cell[half.cell as usize] as usize] as usize;
+        let Some(&(_, first)) = firsts.get(i) else { continue };
+        if half.origin == first || complex.target(number) == first {
+            fans[i].push(number);
+        }
+    }
+    fans
+}
+
+/// The side of a cell at the first point that faces the unbounded region.
+///
+/// The upright plane through the edge that turns most clockwise in the x-y plane (and falls most)
+/// has nothing of the component to its right; the cell next to that empty half-space faces it.
+fn unbounded_side(
+    complex: &Complex,
+    point: u32,
+    halves: &[u32],
+    radial: &[(u32, Vec<u32>)],
+    facets: &mut Facets,
+    space: &mut Space,
+) -> u32 {
+    let base = space.lattice_point(point).expect("a first point is a lattice point");
+    let far = |half: u32| {
+        let origin = complex.halves[half as usize].origin;
+        if origin == point { complex.target(half) } else { origin }
+    };
+    let rays: Vec<[Wide<4>; 3]> = halves.iter().map(|&h| ray(base, far(h), space)).collect();
+    let upright = |r: &[Wide<4>; 3]| r[0].sign() == 0 && r[1].sign() == 0;
+    let best = (0..halves.len())
+        .filter(|&i| !upright(&rays[i]))
+        .min_by(|&i, &j| by_turn(&rays[i], &rays[j]))
+        .unwrap_or(0);
+    let half = halves[best];
+    let edge = complex.halves[half as usize].edge;
+    let around = match radial.binary_search_by_key(&edge, |r| r.0) {
+        Ok(i) => radial[i].1.clone(),
+        Err(_) => complex.around(edge as usize).to_vec(),
+    };
+    let ahead = point < far(half);
+    let (axis, sign) = space.direction(point, far(half));
+    let spokes: Vec<_> = around.iter().map(|&h| complex.spoke(h, facets, space)).collect();
+    // About the edge's direction away from the point, the first cell has all others to its left.
+    let first =
+        spokes.iter().position(|s| spokes.iter().all(|t| s.turn(t, axis, sign) >= 0)).unwrap_or(0);
+    let following = super::classify::following_side(complex, around[first]);
+    if ahead { following ^ 1 } else { following }
+}
+
+/// The direction to another point, times a positive number.
+fn ray(from: Int3, to: u32, space: &Space) -> [Wide<4>; 3] {
+    let to = space.exact(to);
+    std::array::from_fn(|i| to.x[i] - Wide::from(i128::from(from[i])) * to.w)
+}
+
+/// Orders directions, none upright and all to the right, clockwise ones first, then falling ones.
+fn by_turn(p: &[Wide<4>; 3], q: &[Wide<4>; 3]) -> Ordering {
+    let product = |a: Wide<4>, b: Wide<4>| -> Wide<7> { a.resize() * b.resize() };
+    let turn = (product(p[0], q[1]) - product(p[1], q[0])).sign();
+    // The component along the common direction is positive for both, so this compares slopes.
+    let level = if p[0].sign() != 0 { 0 } else { 1 };
+    let climb = (product(p[level], q[2]) - product(p[2], q[level])).sign();
+    0.cmp(&turn).then(0.cmp(&climb))
+}
+
+/// The place just beyond the first point along an edge of a facet of the component.
+fn beyond(complex: &Complex, point: u32, half: u32, facets: &Facets, space: &Space) -> Beyond {
+    let at = |p: u32| space.lattice_point(p).expect("a corner is a lattice point");
+    let cover = complex.cover(complex.halves[half as usize].cell);
+    // What reaches a first point has a corner there.
+    let corners = cover.iter().flat_map(|&(facet, _)| facets.edges(facet));
+    let along = corners.filter(|edge| edge.0 == point).map(|edge| minus(at(edge.1), at(point)));
+    Beyond { point: at(point), along: along.into_iter().next().unwrap_or([0; 3]) }
+}
+
+fn shells(complex: &Complex, of_cell: &[u32], facets: &Facets) -> Vec<Shell> {
+    let mut owned: Vec<(u32, u32, u32)> = vec![];
+    for cell in 0..complex.cell_count() as u32 {
+        for &(facet, _) in complex.cover(cell) {
+            owned.push((of_cell[cell as usize], facets.list()[facet as usize].leaf, facet));
+        }
+    }
+    owned.sort_unstable();
+    owned.dedup();
+    let shell = |run: &[(u32, u32, u32)]| {
+        let members: Vec<u32> = run.iter().map(|o| o.2).collect();
+        let bounds = members
+            .iter()
+            .fold(Bounds::EMPTY, |all, &f| all.with(facets.list()[f as usize].bounds));
+        Shell { component: run[0].0, leaf: run[0].1, facets: members, bounds }
+    };
+    owned.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).map(shell).collect()
+}
+
+fn around(
+    component: u32,
+    place: Beyond,
+    shells: &[Shell],
+    tree: &Hierarchy,
+    facets: &Facets,
+    space: &Space,
+) -> Vec<(u32, i32)> {
+    let here = place.point.map(|c| c as i32);
+    let mut found = vec![];
+    tree.overlapping(&Bounds { min: here, max: here }, |s| {
+        let shell = &shells[s as usize];
+        if shell.component != component {
+            let winding = spherical_winding(place.point, shell, facets, space)
+                .unwrap_or_else(|| ray_winding(place, shell, facets, space));
+            if winding != 0 {
+                found.push((shell.leaf, winding));
+            }
+        }
+    });
+    found.sort_unstable();
+    found
+}
+
+/// How far a sum of solid angles may be from a whole number of spheres and still count as one.
+const WHOLE: f64 = 1e-3;
+
+/// The winding number of a shell around a point by the spherical projection; `None` where the point
+/// may lie on the shell.
+fn spherical_winding(at: Int3, shell: &Shell, facets: &Facets, space: &Space) -> Option<i32> {
+    let here = at.map(|c| c as i32);
+    let here = Bounds { min: here, max: here };
+    let mut sum = 0.0;
+    for &facet in &shell.facets {
+        match solid_angle(at, facet, facets, space) {
+            Some(angle) => sum += angle,
+            None if facets.list()[facet as usize].bounds.meets(&here) => return None,
+            None => {}
+        }
+    }
+    let spheres = sum / (4.0 * std::f64::consts::PI);
+    ((spheres - spheres.round()).abs() < WHOLE).then_some(spheres.round() as i32)
+}
+
+/// The signed solid angle of a facet, positive seen from behind (van Oosterom and Strackee 1983);
+/// `None` for a point in its plane.
+fn solid_angle(at: Int3, facet: u32, facets: &Facets, space: &Space) -> Option<f64> {
+    let arm = |p: u32| minus(space.lattice_point(p).expect("a corner is a lattice point"), at);
+    let (mut volume, mut angle) = (0i128, 0.0);
+    for corners in facets.loops(facet) {
+        let a = arm(corners[0]);
+        for pair in corners[1..].windows(2) {
+            let (b, c) = (arm(pair[0]), arm(pair[1]));
+            let product = triple(a, b, c);
+            volume += product;
+            angle += 2.0 * libm::atan2(product as f64, denominator(a, b, c));
+        }
+    }
+    (volume != 0).then_some(angle)
+}
+
+fn triple(a: Int3, b: Int3, c: Int3) -> i128 {
+    let normal = cross(b, c);
+    (0..3).map(|i| normal[i] * i128::from(a[i])).sum()
+}
+
+fn denominator(a: Int3, b: Int3, c: Int3) -> f64 {
+    let length = |v: Int3| (dot(v, v) as f64).sqrt();
+    let (p, q, r) = (length(a), length(b), length(c));
+    p * q * r + dot(a, b) as f64 * r + dot(b, c) as f64 * p + dot(c, a) as f64 * q
+}
+
+/// The place just beyond a lattice point: moved infinitesimally along a direction, by far less
+/// downwards in y, and by still less downwards in z.
+#[derive(Clone, Copy)]
+struct Beyond {
+    point: Int3,
+    along: Int3,
+}
+
+/// The winding number of a shell around such a place, which is not on the shell: signed crossings of
+/// the ray to the left.
+fn ray_winding(place: Beyond, shell: &Shell, facets: &Facets, space: &Space) -> i32 {
+    let point = |p: u32| space.lattice_point(p).expect("a corner is a lattice point");
+    let mut winding = 0;
+    for &facet in &shell.facets {
+        let normal = polygon::area_vector(facets.loops(facet), &point);
+        let facing = normal[0].signum();
+        if facing == 0 || !shadow_covers(place, facet, facets, &point) {
+            continue;
+        }
+        let corner = point(facets.loops(facet).next().map_or(0, |l| l[0]));
+        let along = |v: Int3| (0..3).map(|i| normal[i] * i128::from(v[i])).sum::<i128>();
+        let side = first_sign([along(minus(place.point, corner)), along(place.along)]);
+        // The place is to the right of the facet's plane.
+        if side * facing > 0 {
+            winding -= facing as i32;
+        }
+    }
+    winding
+}
+
+/// The sign of a sum whose terms each outweigh all that follow.
+fn first_sign<const N: usize>(terms: [i128; N]) -> i128 {
+    terms.into_iter().find(|&t| t != 0).unwrap_or(0).signum()
+}
+
+/// Whether a facet, seen along x, covers a place: an odd number of its edges run above.
+fn shadow_covers(place: Beyond, facet: u32, facets: &Facets, point: &impl Fn(u32) -> Int3) -> bool {
+    let Beyond { point: at, along } = place;
+    let is_right = |c: Int3| first_sign([i128::from(c[1] - at[1]), -i128::from(along[1]), 1]) > 0;
+    let mut odd = false;
+    for (a, b) in facets.edges(facet) {
+        let (a, b) = (point(a), point(b));
+        if is_right(a) == is_right(b) {
+            continue;
+        }
+        let (left, right) = if is_right(a) { (b, a) } else { (a, b) };
+        let [dy, dz] = [1, 2].map(|i| i128::from(right[i] - left[i]));
+        let [y, z] = [1, 2].map(|i| i128::from(left[i] - at[i]));
+        let turn = i128::from(along[1]) * dz - i128::from(along[2]) * dy;
+        odd ^= first_sign([z * dy - y * dz, turn, -dz, 1]) > 0;
+    }
+    odd
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A tetrahedron with a corner at the origin, wound so that its faces look outwards.
+    fn tetrahedron() -> (Facets, Space, Shell) {
+        let mut mesh = crate::geom::PolyMesh::with_points(
+            [[0.0; 3], [8.0, 0.0, 0.0], [0.0, 8.0, 0.0], [0.0, 0.0, 8.0]]
+                .map(glam::DVec3::from_array)
+                .to_vec(),
+        );
+        let origin = mesh.add_origin(crate::geom::Origin::of(crate::geom::Surface::Plane));
+        for corners in [[0u32, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]] {
+            let plane = mesh.add_plane();
+            mesh.push_face(&[corners], plane, origin);
+        }
+        let solid = std::sync::Arc::new(crate::kernel::brep::Polyhedron::trusted(mesh));
+        let place = crate::geom::Placement::IDENTITY;
+        let leaf = super::super::frame::Leaf { solid, local: place, full: place };
+        let (min, max) = super::super::facet::extent(std::slice::from_ref(&leaf));
+        let lattice = super::super::lattice::Lattice::covering(min, max).expect("finite");
+        let mut space = Space::default();
+        let facets = Facets::of(&[leaf], &lattice, &mut space);
+        let bounds = facets.list().iter().fold(Bounds::EMPTY, |all, f| all.with(f.bounds));
+        let shell = Shell { component: 0, leaf: 0, facets: vec![0, 1, 2, 3], bounds };
+        (facets, space, shell)
+    }
+
+    #[test]
+    fn projection_and_ray_agree() {
+        let (facets, space, shell) = tetrahedron();
+        let corner = space.lattice_point(0).expect("a corner");
+        let step = (space.lattice_point(1).expect("a corner")[0] - corner[0]) / 8;
+        for code in 0..6 * 6 * 6 {
+            let at = [code % 6, code / 6 % 6, code / 36].map(|c| (2 * c - 3) * step);
+            let at = [0, 1, 2].map(|i| at[i] + corner[i] + i as i64);
+            let place = Beyond { point: at, along: [1, 2, 3] };
+            let by_ray = ray_winding(place, &shell, &facets, &space);
+            assert_eq!(spherical_winding(at, &shell, &facets, &space), Some(by_ray), "{at:?}");
+        }
+    }
+
+    #[test]
+    fn the_ray_decides_at_a_corner() {
+        let (facets, space, shell) = tetrahedron();
+        let point = space.lattice_point(0).expect("a corner");
+        assert_eq!(spherical_winding(point, &shell, &facets, &space), None);
+        let at = |along: Int3| ray_winding(Beyond { point, along }, &shell, &facets, &space);
+        assert_eq!(at([1, 1, 1]), 1);
+        assert_eq!(at([3, 1, 2]), 1);
+        assert_eq!(at([-1, -1, -1]), 0);
+        assert_eq!(at([1, 1, -1]), 0);
+        assert_eq!(at([-1, 1, 1]), 0);
+    }
+}

@@ -1,0 +1,311 @@
+//! The planes and points of one operation, each known by one number.
+//!
+//! Equal planes have equal numbers, equal points have equal numbers, whatever they were found from:
+//! coplanarity and coincidence are integer comparisons everywhere else. A point is a lattice point
+//! or the point where three planes meet; it is never rounded here.
+
+use std::cmp::Ordering;
+
+use rustc_hash::FxHashMap;
+
+use super::hierarchy::Bounds;
+use crate::geom::predicates::{Int3, Meet, Plane, cross, minus};
+
+/// The number of no plane.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// A plane with its doubles, for filters.
+struct Stored {
+    plane: Plane,
+    normal: [f64; 3],
+    offset: f64,
+}
+
+/// A point: where it is, nearly, and the three planes that define it ([`NONE`] for lattice points).
+struct Point {
+    near: [f64; 3],
+    planes: [u32; 3],
+}
+
+/// How far `near` may be from the point, in steps: numerators and denominators are converted with a
+/// relative error of 2^-51 and divided, coordinates are below 2^29, so 2^-20 is ample.
+const NEAR: f64 = 1.0 / (1u64 << 20) as f64;
+
+/// Relative error of the doubles in a plane equation, with room for the sums.
+const PLANE_ERROR: f64 = 8.0 * f64::EPSILON;
+
+/// Shift of the grid that points are looked up in, so that whole coordinates, the most frequent
+/// ones, are far from the borders of cells.
+const GRID_SHIFT: f64 = 0.3;
+
+/// All planes and points of an operation.
+#[derive(Default)]
+pub(super) struct Space {
+    planes: Vec<Stored>,
+    plane_numbers: FxHashMap<Plane, u32>,
+    points: Vec<Point>,
+    lattice: FxHashMap<[i32; 3], u32>,
+    meets: FxHashMap<[u32; 3], u32>,
+    /// Points of three planes by cell of a grid; a chain of points with the same cell.
+    cells: FxHashMap<[i32; 3], u32>,
+    chain: FxHashMap<u32, u32>,
+    edges: FxHashMap<(u32, u32), [u32; 2]>,
+}
+
+impl Space {
+    /// The number of a plane.
+    pub fn add_plane(&mut self, plane: Plane) -> u32 {
+        let planes = &mut self.planes;
+        *self.plane_numbers.entry(plane).or_insert_with(|| {
+            let (normal, offset) = (plane.normal.map(|c| c as f64), plane.offset as f64);
+            planes.push(Stored { plane, normal, offset });
+            planes.len() as u32 - 1
+        })
+    }
+
+    /// The plane of a number.
+    pub fn plane(&self, plane: u32) -> &Plane {
+        &self.planes[plane as usize].plane
+    }
+
+    /// The number of a lattice point.
+    pub fn add_lattice_point(&mut self, at: Int3) -> u32 {
+        let points = &mut self.points;
+        *self.lattice.entry(at.map(|c| c as i32)).or_insert_with(|| {
+            points.push(Point { near: at.map(|c| c as f64), planes: [NONE; 3] });
+            points.len() as u32 - 1
+        })
+    }
+
+    /// The coordinates of a point if it was added as a lattice point.
+    pub fn lattice_point(&self, point: u32) -> Option<Int3> {
+        let point = &self.points[point as usize];
+        (point.planes[0] == NONE).then(|| point.near.map(|c| c as i64))
+    }
+
+    /// The coordinates of a point in steps, with an error far below one step; whole numbers exactly.
+    pub fn near(&self, point: u32) -> [f64; 3] {
+        self.points[point as usize].near
+    }
+
+    /// The exact coordinates of a point.
+    pub fn exact(&self, point: u32) -> Meet {
+        let point = &self.points[point as usize];
+        if point.planes[0] == NONE {
+            return Meet::lattice(point.near.map(|c| c as i64));
+        }
+        let [a, b, c] = point.planes.map(|p| self.plane(p));
+        Meet::of(a, b, c).expect("a stored point is defined by independent planes")
+    }
+
+    /// The number of the point where three planes meet; `None` if they do not meet in one point.
+    pub fn meet(&mut self, a: u32, b: u32, c: u32) -> Option<u32> {
+        let mut planes = [a, b, c];
+        planes.sort_unstable();
+        if let Some(&point) = self.meets.get(&planes) {
+            return Some(point);
+        }
+        let exact = Meet::of(self.plane(a), self.plane(b), self.plane(c))?;
+        let mut near = exact.approximate();
+        for (axis, c) in near.iter_mut().enumerate() {
+            let whole = c.round();
+            if (*c - whole).abs() <= NEAR && exact.is_at(axis, whole as i64) {
+                *c = whole;
+            }
+        }
+        let point = self.known_at(near, planes).unwrap_or_else(|| self.store(near, planes));
+        self.meets.insert(planes, point);
+        Some(point)
+    }
+
+    /// The stored point that lies on all three planes, among those near the place.
+    fn known_at(&self, near: [f64; 3], planes: [u32; 3]) -> Option<u32> {
+        let same = |point: u32| {
+            let there = self.points[point as usize].near;
+            (0..3).all(|i| (there[i] - near[i]).abs() <= 2.0 * NEAR)
+                && planes.iter().all(|&p| self.side(point, p) == 0)
+        };
+        if near.iter().all(|c| c.fract() == 0.0) {
+            let found = self.lattice.get(&near.map(|c| c as i32)).copied();
+            if found.is_some_and(same) {
+                return found;
+            }
+        }
+        let low = near.map(|c| cell(c - 2.0 * NEAR));
+        let high = near.map(|c| cell(c + 2.0 * NEAR));
+        for x in low[0]..=high[0] {
+            for y in low[1]..=high[1] {
+                for z in low[2]..=high[2] {
+                    let mut next = self.cells.get(&[x, y, z]).copied();
+                    while let Some(point) = next {
+                        if same(point) {
+                            return Some(point);
+                        }
+                        next = self.chain.get(&point).copied();
+                    }
+                }
+            }
+        }
+        None
+    }
+
+    fn store(&mut self, near: [f64; 3], planes: [u32; 3]) -> u32 {
+        let point = self.points.len() as u32;
+        self.points.push(Point { near, planes });
+        if let Some(before) = self.cells.insert(near.map(cell), point) {
+            self.chain.insert(point, before);
+        }
+        point
+    }
+
+    /// The sign of a point to a plane: 1 where its normal points, 0 on it, else -1.
+    pub fn side(&self, point: u32, plane: u32) -> i32 {
+        let (p, stored) = (&self.points[point as usize], &self.planes[plane as usize]);
+        if p.planes.contains(&plane) {
+            return 0;
+        }
+        let (mut value, mut size, mut slope) = (-stored.offset, stored.offset.abs(), 0.0);
+        for axis in 0..3 {
+            let term = stored.normal[axis] * p.near[axis];
+            value += term;
+            size += term.abs();
+            slope += stored.normal[axis].abs();
+        }
+        if value.abs() > size * PLANE_ERROR + slope * NEAR {
+            return if value > 0.0 { 1 } else { -1 };
+        }
+        if p.planes[0] == NONE {
+            return stored.plane.side(p.near.map(|c| c as i64));
+        }
+        stored.plane.side_of(&self.exact(point))
+    }
+
+    /// Compares one coordinate of two points.
+    pub fn compare(&self, a: u32, b: u32, axis: usize) -> Ordering {
+        let (p, q) = (&self.points[a as usize], &self.points[b as usize]);
+        let difference = p.near[axis] - q.near[axis];
+        let whole = p.planes[0] == NONE && q.planes[0] == NONE;
+        if a == b {
+            Ordering::Equal
+        } else if whole || difference.abs() > 2.0 * NEAR {
+            difference.partial_cmp(&0.0).unwrap_or(Ordering::Equal)
+        } else {
+            self.exact(a).compare(&self.exact(b), axis)
+        }
+    }
+
+    /// An axis along which two different points differ, and the sign of `b` - `a` along it.
+    pub fn direction(&self, a: u32, b: u32) -> (usize, i32) {
+        let (p, q) = (self.near(a), self.near(b));
+        let size = |axis: usize| (q[axis] - p[axis]).abs();
+        let mut axes = [0, 1, 2];
+        axes.sort_by(|&i, &j| size(j).total_cmp(&size(i)));
+        for axis in axes {
+            match self.compare(a, b, axis) {
+                Ordering::Less => return (axis, 1),
+                Ordering::Greater => return (axis, -1),
+                Ordering::Equal => {}
+            }
+        }
+        (0, 0)
+    }
+
+    /// Two planes, each along an axis, that meet in the line through two lattice points.
+    pub fn edge_planes(&mut self, a: u32, b: u32) -> [u32; 2] {
+        let key = (a.min(b), a.max(b));
+        if let Some(&planes) = self.edges.get(&key) {
+            return planes;
+        }
+        let [p, q] = [key.0, key.1].map(|i| self.points[i as usize].near.map(|c| c as i64));
+        let d = minus(q, p);
+        let main = (0..3).max_by_key(|&i| (d[i].abs(), 2 - i)).unwrap_or(0);
+        let planes = [(main + 1) % 3, (main + 2) % 3].map(|other| {
+            let mut normal = [0i128; 3];
+            normal[other] = i128::from(d[main]);
+            normal[main] = -i128::from(d[other]);
+            let (plane, _) = Plane::through(normal, p).expect("the points differ");
+            self.add_plane(plane)
+        });
+        self.edges.insert(key, planes);
+        planes
+    }
+
+    /// The plane along an axis that cuts `plane` best in the line through two lattice points.
+    pub fn support(&mut self, a: u32, b: u32, plane: u32) -> u32 {
+        let [first, second] = self.edge_planes(a, b);
+        let tilt = |other: u32| {
+            let (m, n) = (&self.planes[plane as usize].normal, &self.planes[other as usize].normal);
+            let dot = |a: &[f64; 3], b: &[f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+            dot(m, n).powi(2) / dot(n, n)
+        };
+        let steeper = tilt(second) < tilt(first);
+        if first == plane || (second != plane && steeper) { second } else { first }
+    }
+
+    /// The direction of the line in which two planes meet.
+    pub fn line(&self, p: u32, q: u32) -> [i128; 3] {
+        cross(self.plane(p).normal, self.plane(q).normal)
+    }
+
+    /// A box of lattice points around two points.
+    pub fn bounds(&self, a: u32, b: u32) -> Bounds {
+        let (p, q) = (self.near(a), self.near(b));
+        Bounds {
+            min: std::array::from_fn(|i| (p[i].min(q[i]) - NEAR).floor() as i32),
+            max: std::array::from_fn(|i| (p[i].max(q[i]) + NEAR).ceil() as i32),
+        }
+    }
+}
+
+/// The index of the axis with the largest component.
+pub(super) fn main_axis(v: [i128; 3]) -> usize {
+    (0..3).max_by_key(|&i| (v[i].unsigned_abs(), 2 - i)).unwrap_or(0)
+}
+
+fn cell(coordinate: f64) -> i32 {
+    (coordinate + GRID_SHIFT).floor() as i32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plane(space: &mut Space, normal: [i128; 3], point: Int3) -> u32 {
+        space.add_plane(Plane::through(normal, point).expect("a direction").0)
+    }
+
+    #[test]
+    fn the_same_point_from_other_planes_has_the_same_number() {
+        let mut space = Space::default();
+        let x = plane(&mut space, [2, 1, 0], [1, 0, 0]);
+        let y = plane(&mut space, [-1, 3, 0], [0, 0, 0]);
+        let z = plane(&mut space, [0, 0, 1], [0, 0, 5]);
+        let point = space.meet(x, y, z).expect("one point");
+        assert!((space.near(point)[0] - 6.0 / 7.0).abs() < 1e-12);
+        // x = 6/7, y = 2/7: on x - 3y = 0 and on x + 4y = 2.
+        let other = plane(&mut space, [1, 4, 0], [2, 0, 9]);
+        assert_eq!(space.meet(other, z, x), Some(point));
+        assert_eq!(space.meet(x, y, x), None);
+    }
+
+    #[test]
+    fn a_meet_on_a_known_lattice_point_is_that_point() {
+        let mut space = Space::default();
+        let corner = space.add_lattice_point([3, 4, 5]);
+        let planes = [[1, 0, 0], [1, 1, 0], [7, -2, 9]].map(|n| plane(&mut space, n, [3, 4, 5]));
+        assert_eq!(space.meet(planes[0], planes[1], planes[2]), Some(corner));
+        assert_eq!(space.side(corner, planes[2]), 0);
+    }
+
+    #[test]
+    fn supports_hold_their_edge() {
+        let mut space = Space::default();
+        let a = space.add_lattice_point([0, 0, 0]);
+        let b = space.add_lattice_point([4, -6, 2]);
+        let floor = plane(&mut space, [6, 4, 0], [0, 0, 0]);
+        let support = space.support(a, b, floor);
+        assert_ne!(support, floor);
+        assert_eq!((space.side(a, support), space.side(b, support)), (0, 0));
+        assert_eq!(space.direction(a, b), (1, -1));
+    }
+}

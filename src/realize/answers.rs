@@ -1,0 +1,123 @@
+//! Answers to what evaluation asks about shapes and files.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::{Realizer, failure::failure, figure, import, measure};
+use crate::{
+    base::{Code, Diagnostic, FileError},
+    geom::spherical_projection,
+    input,
+    kernel::brep::distance,
+    shape::{
+        Geometry, GeometryError, Kind, Measures, ShapeGraph, ShapeId,
+        geometry::{Data, Imported, InsideMethod},
+        node::TextSpec,
+    },
+};
+
+impl Geometry for Realizer<'_> {
+    fn measures(&self, graph: &ShapeGraph, shape: ShapeId) -> Result<Arc<Measures>, GeometryError> {
+        if let Some(measures) = self.measures.get(&shape) {
+            return Ok(measures);
+        }
+        let measures = Arc::new(match graph.kind(shape) {
+            Kind::Solid => measure::of_solid(&self.solid(graph, shape)?.polyhedron),
+            Kind::Profile => measure::of_figure(&*self.figure(graph, shape)?),
+        });
+        self.measures.extend([(shape, measures.clone())]);
+        Ok(measures)
+    }
+
+    fn inside(
+        &self,
+        graph: &ShapeGraph,
+        shape: ShapeId,
+        point: DVec3,
+        by: InsideMethod,
+    ) -> Result<bool, GeometryError> {
+        let solid = self.solid(graph, shape)?;
+        match by {
+            InsideMethod::Sphere => {
+                Ok(spherical_projection::inside(solid.polyhedron.mesh(), point))
+            }
+        }
+    }
+
+    fn solid_angle(
+        &self,
+        graph: &ShapeGraph,
+        shape: ShapeId,
+        point: DVec3,
+    ) -> Result<f64, GeometryError> {
+        let solid = self.solid(graph, shape)?;
+        Ok(spherical_projection::solid_angle(solid.polyhedron.mesh(), point))
+    }
+
+    fn distance_to_point(
+        &self,
+        graph: &ShapeGraph,
+        shape: ShapeId,
+        point: DVec3,
+    ) -> Result<f64, GeometryError> {
+        distance::point(&self.solid(graph, shape)?.polyhedron, point).ok_or_else(nowhere)
+    }
+
+    fn distance(&self, graph: &ShapeGraph, a: ShapeId, b: ShapeId) -> Result<f64, GeometryError> {
+        let (a, b) = (self.solid(graph, a)?, self.solid(graph, b)?);
+        distance::solids(&a.polyhedron, &b.polyhedron).ok_or_else(nowhere)
+    }
+
+    fn hausdorff(&self, graph: &ShapeGraph, a: ShapeId, b: ShapeId) -> Result<f64, GeometryError> {
+        let (a, b) = (self.solid(graph, a)?, self.solid(graph, b)?);
+        let found = distance::hausdorff(&a.polyhedron, &b.polyhedron).ok_or_else(nowhere)?;
+        Ok(found.least)
+    }
+
+    fn text_width(&self, text: &TextSpec) -> Result<f64, GeometryError> {
+        figure::text(self, text).map(|text| text.width)
+    }
+
+    fn import(&self, file: &str) -> Result<Imported, GeometryError> {
+        let extension = file.rsplit_once('.').map_or("", |(_, e)| e).to_ascii_lowercase();
+        let bytes = self.bytes(file)?;
+        match extension.as_str() {
+            "stl" | "obj" | "off" | "ply" | "3mf" => Ok(Imported::Solid),
+            "svg" | "dxf" => Ok(Imported::Profile),
+            "json" | "csv" => input::read_data(file, &bytes)
+                .map(|data| Imported::Data(converted(data)))
+                .map_err(|error| import::unreadable(file, &error)),
+            _ => {
+                let words = format!("`{file}` is of no format that is read");
+                let help = "stl, obj, off, ply, 3mf, svg, dxf, json and csv are";
+                Err(failure(Diagnostic::error(Code::BadFile, words).help(help)))
+            }
+        }
+    }
+
+    fn read(&self, file: &str) -> Result<Vec<u8>, FileError> {
+        self.world.read(file)
+    }
+}
+
+/// The error for a distance that does not exist.
+fn nowhere() -> GeometryError {
+    let words = "an empty solid has no distance to anything";
+    failure(Diagnostic::error(Code::Degenerate, words))
+}
+
+/// Values of a reader as evaluation takes them.
+fn converted(data: input::Data) -> Data {
+    match data {
+        input::Data::Null => Data::Null,
+        input::Data::Bool(truth) => Data::Bool(truth),
+        input::Data::Number(number) => Data::Number(number),
+        input::Data::Text(text) => Data::Text(text.into()),
+        input::Data::List(items) => Data::List(items.into_iter().map(converted).collect()),
+        input::Data::Record(fields) => {
+            let field = |(name, value): (String, _)| (name.into(), converted(value));
+            Data::Record(fields.into_iter().map(field).collect())
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Warnings about shapes that were made but are perhaps not what was meant.
+
+use super::{Realizer, Solid, failure::Made, paint::Paint, structure::operands, unwrap};
+use crate::{
+    base::{Code, Diagnostic},
+    geom::Placement,
+    shape::{Node, ShapeGraph, ShapeId},
+};
+
+use glam::DVec3;
+
+/// Two corners of a box.
+type Bounds = [DVec3; 2];
+
+/// How many leaves are looked at to find a box for a warning.
+const MOST_STEPS: usize = 1 << 16;
+
+/// What is to be said about a shape that was made.
+pub fn warnings(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Vec<Diagnostic> {
+    let Ok(solid) = realizer.solid(graph, id) else { return vec![] };
+    let snap = large_snap(realizer, graph, id, &solid);
+    let empty = if solid.polyhedron.is_empty() { empty_cut(realizer, graph, id) } else { None };
+    empty.into_iter().chain(snap).collect()
+}
+
+/// The warning for a part that is empty after a cut, with the boxes of what was cut and of what cut it.
+/// `None` where it is empty by the modeller's word.
+fn empty_cut(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Option<Diagnostic> {
+    let cut = first_cut(graph, id)?;
+    let list = operands(graph.node(cut))?;
+    let (first, rest) = list.split_first()?;
+    let around = |ids: &[ShapeId]| {
+        let boxes = ids.iter().filter_map(|&id| reach(realizer, graph, id).ok().flatten());
+        boxes.reduce(joined).map_or_else(|| "nothing".to_string(), words)
+    };
+    let diagnostic = Diagnostic::warning(Code::EmptyResult, "part is empty after a cut")
+        .label(graph.origin(cut), "nothing is left of this")
+        .note(format!("the first operand lies in {}", around(&[*first])))
+        .note(format!("the others lie in {}", around(rest)));
+    Some(diagnostic)
+}
+
+/// The warning for corners that rounding moved by more than the tolerance.
+fn large_snap(
+    realizer: &Realizer,
+    graph: &ShapeGraph,
+    id: ShapeId,
+    solid: &Solid,
+) -> Option<Diagnostic> {
+    let tolerance = realizer.tolerance().mm();
+    (solid.snap > tolerance).then(|| {
+        let words = format!("set operations moved corners by up to {:.3e} mm", solid.snap);
+        Diagnostic::warning(Code::Snap, words)
+            .label(graph.origin(id), "")
+            .note(format!("the tolerance is {tolerance} mm"))
+            .help("keep far-away parts out of one set operation, or move the model to the origin")
+    })
+}
+
+/// The outermost difference or intersection of a shape.
+fn first_cut(graph: &ShapeGraph, id: ShapeId) -> Option<ShapeId> {
+    let mut open = vec![id];
+    let mut seen = rustc_hash::FxHashSet::default();
+    while let Some(id) = open.pop() {
+        if !seen.insert(id) {
+            continue;
+        }
+        match graph.node(id) {
+            Node::Difference(_) | Node::Intersection(_) => return Some(id),
+            Node::Union(list) => open.extend(list.iter().rev()),
+            node => open.extend(super::structure::wrapped(node)),
+        }
+    }
+    None
+}
+
+/// A box that holds a shape, not smaller for what is cut off; `None` if it is empty or has too many
+/// copies of its leaves to look at.
+fn reach(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Made<Option<Bounds>> {
+    let mut open = vec![(id, Placement::IDENTITY)];
+    let mut whole: Option<Bounds> = None;
+    for _ in 0..MOST_STEPS {
+        let Some((id, outer)) = open.pop() else { return Ok(whole) };
+        let found = unwrap(graph, id, Paint::default())?;
+        let placement = outer.after(&found.placement);
+        match graph.node(found.core) {
+            Node::Union(list) => open.extend(list.iter().map(|&id| (id, placement))),
+            Node::Difference(list) | Node::Intersection(list) => {
+                open.extend(list.first().map(|&id| (id, placement)));
+            }
+            _ => {
+                let solid = realizer.core_made(found.core)?;
+                let corners = solid.polyhedron.mesh().points.iter().map(|p| placement.point(*p));
+                let here = corners.map(|p| [p, p]).reduce(joined);
+                whole = whole.into_iter().chain(here).reduce(joined);
+            }
+        }
+    }
+    Ok(None)
+}
+
+fn joined(a: Bounds, b: Bounds) -> Bounds {
+    [a[0].min(b[0]), a[1].max(b[1])]
+}
+
+fn words([min, max]: Bounds) -> String {
+    let [x, y, z] = [0, 1, 2].map(|axis| format!("{}..{}", short(min[axis]), short(max[axis])));
+    format!("x {x}, y {y}, z {z} mm")
+}
+
+/// At most four decimals, none that say nothing.
+fn short(x: f64) -> String {
+    let rounded = (x * 1e4).round() / 1e4;
+    format!("{}", rounded + 0.0)
+}

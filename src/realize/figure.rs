@@ -1,0 +1,205 @@
+//! Plane figures: profiles made into regions, each with the frame of its plane.
+
+use std::sync::Arc;
+
+use glam::DAffine2;
+
+use super::{
+    Realizer,
+    failure::{At, Coded, Made, failure},
+    import,
+    paint::Paint,
+    plane,
+};
+use crate::{
+    base::{Code, Diagnostic},
+    geom::{Placement, Region},
+    input,
+    kernel::profile::{
+        self, ProfileError,
+        text::{Align, Baseline, Text, TextOptions},
+    },
+    shape::{
+        GeometryError, Node, ShapeGraph, ShapeId,
+        node::{HorizontalAlign, TextSpec, VerticalAlign},
+    },
+};
+
+/// A realised profile.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Figure {
+    /// In the coordinates of its plane.
+    pub region: Region,
+    /// The rigid motion from the xy plane to its plane.
+    pub frame: Placement,
+    /// Tags and colour for the faces of a solid made from it.
+    pub paint: Paint,
+}
+
+impl Figure {
+    fn flat(region: Region) -> Figure {
+        Figure { region, frame: Placement::IDENTITY, paint: Paint::default() }
+    }
+
+    fn with_region(&self, region: Region) -> Figure {
+        Figure { region, frame: self.frame, paint: self.paint.clone() }
+    }
+}
+
+impl Coded for ProfileError {
+    fn code(&self) -> Code {
+        match self {
+            ProfileError::SelfCrossing { .. } | ProfileError::StrayHole { .. } => {
+                Code::SelfCrossing
+            }
+            ProfileError::Font { .. } | ProfileError::Glyph { .. } => Code::BadFile,
+            ProfileError::LongText { .. } => Code::Limit,
+            _ => Code::Degenerate,
+        }
+    }
+}
+
+/// Makes the figure of a profile node whose parts are made.
+pub fn make(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Made<Figure> {
+    let origin = graph.origin(id);
+    let tolerance = realizer.tolerance();
+    let part = |id: &ShapeId| realizer.figure_made(*id);
+    match graph.node(id) {
+        Node::Rect { size } => profile::rect(*size).at(origin).map(Figure::flat),
+        Node::Ellipse { radii, sides } => {
+            profile::ellipse(*radii, *sides, tolerance).at(origin).map(Figure::flat)
+        }
+        Node::Polygon { points, holes } => {
+            let holes: Vec<_> = holes.iter().map(|hole| hole.to_vec()).collect();
+            profile::polygon(points, &holes).at(origin).map(Figure::flat)
+        }
+        Node::Text(spec) => {
+            text(realizer, spec).map_err(|e| placed(e, graph, id)).map(|t| Figure::flat(t.region))
+        }
+        Node::ImportProfile { file } => {
+            let bytes = realizer.bytes(file).map_err(|e| placed(e, graph, id))?;
+            let drawing = input::read_profile(file, &bytes, tolerance);
+            let drawing = drawing.map_err(|e| placed(import::unreadable(file, &e), graph, id))?;
+            realizer.remark(graph, id, file, &drawing.notes);
+            Ok(Figure::flat(drawing.region))
+        }
+        Node::OffsetProfile { profile, d } => {
+            let figure = part(profile)?;
+            Ok(figure.with_region(profile::offset(&figure.region, *d, tolerance)))
+        }
+        Node::RoundProfile { profile, r } => {
+            let figure = part(profile)?;
+            Ok(figure.with_region(profile::round(&figure.region, *r, tolerance)))
+        }
+        Node::Transform { placement, child } => {
+            transformed(&*part(child)?, placement).ok_or_else(|| flattened(graph, id))
+        }
+        Node::Tag { name, child } => {
+            let figure = part(child)?;
+            let paint = figure.paint.within(&Paint::default().tagged(name));
+            Ok(Figure { paint, ..Figure::clone(&figure) })
+        }
+        Node::Paint { color, child } => {
+            let figure = part(child)?;
+            let paint = figure.paint.within(&Paint::default().painted(*color));
+            Ok(Figure { paint, ..Figure::clone(&figure) })
+        }
+        Node::Union(list) => combined(realizer, graph, list, profile::union),
+        Node::Difference(list) => combined(realizer, graph, list, profile::difference),
+        Node::Intersection(list) => combined(realizer, graph, list, profile::intersection),
+        Node::Hull(list) => {
+            let joined = combined(realizer, graph, list, profile::union)?;
+            let points: Vec<_> =
+                joined.region.contours().flat_map(|c| c.points.iter().copied()).collect();
+            Ok(joined.with_region(profile::hull(&points).at(origin)?))
+        }
+        _ => Ok(Figure::flat(Region::default())),
+    }
+}
+
+/// The figure after a placement; `None` where that flattens it.
+fn transformed(figure: &Figure, placement: &Placement) -> Option<Figure> {
+    let (within, frame) = plane::split(&placement.after(&figure.frame))?;
+    let region = moved(&figure.region, &within);
+    Some(Figure { region, frame, paint: figure.paint.clone() })
+}
+
+/// The region after a map of its plane, to the bit the same where the map changes nothing.
+pub fn moved(region: &Region, map: &DAffine2) -> Region {
+    if *map == DAffine2::IDENTITY { region.clone() } else { profile::placed(region, map) }
+}
+
+/// The error for a placement that leaves no area.
+pub fn flattened(graph: &ShapeGraph, id: ShapeId) -> GeometryError {
+    let words = "the placement flattens the shape; every direction needs a scale other than 0";
+    failure(Diagnostic::error(Code::Degenerate, words).label(graph.origin(id), ""))
+}
+
+/// Set algebra of figures in one plane, in the frame of the first one. A paint holds where all agree.
+fn combined(
+    realizer: &Realizer,
+    graph: &ShapeGraph,
+    list: &[ShapeId],
+    algebra: fn(&[Region]) -> Region,
+) -> Made<Figure> {
+    let figures: Vec<Arc<Figure>> =
+        list.iter().map(|&id| realizer.figure_made(id)).collect::<Result<_, _>>()?;
+    let Some(leader) = figures.iter().position(|f| !f.region.is_empty()) else {
+        return Ok(Figure::flat(Region::default()));
+    };
+    let frame = figures[leader].frame;
+    let mut regions = vec![];
+    for (figure, &id) in figures.iter().zip(list) {
+        let apart = || two_planes(graph, list[leader], id);
+        let empty = figure.region.is_empty();
+        let map =
+            if empty { Some(DAffine2::IDENTITY) } else { plane::between(&figure.frame, &frame) };
+        regions.push(moved(&figure.region, &map.ok_or_else(apart)?));
+    }
+    let paint = figures[leader].paint.clone();
+    let agreed = figures.iter().all(|f| f.paint == paint);
+    Ok(Figure {
+        region: algebra(&regions),
+        frame,
+        paint: if agreed { paint } else { Paint::default() },
+    })
+}
+
+fn two_planes(graph: &ShapeGraph, a: ShapeId, b: ShapeId) -> GeometryError {
+    let words = "these profiles lie in different planes; set operations need one plane";
+    let diagnostic = Diagnostic::error(Code::Degenerate, words)
+        .label(graph.origin(b), "this one is in another plane")
+        .label(graph.origin(a), "than this one")
+        .help("move the profiles after they are combined, or extrude them first");
+    failure(diagnostic)
+}
+
+/// Gives an error without a place the place of the node that asked.
+pub fn placed(mut error: GeometryError, graph: &ShapeGraph, id: ShapeId) -> GeometryError {
+    if error.diagnostic.labels.is_empty() {
+        let label = crate::base::Label { span: graph.origin(id), message: String::new() };
+        error.diagnostic.labels.push(label);
+    }
+    error
+}
+
+/// A text as the profile kernel sets it. The error has no place yet.
+pub fn text(realizer: &Realizer, spec: &TextSpec) -> Made<Text> {
+    let font = spec.font.as_ref().map(|file| realizer.bytes(file)).transpose()?;
+    let options = TextOptions {
+        size: spec.size,
+        halign: match spec.halign {
+            HorizontalAlign::Left => Align::Left,
+            HorizontalAlign::Center => Align::Center,
+            HorizontalAlign::Right => Align::Right,
+        },
+        valign: match spec.valign {
+            VerticalAlign::Top => Baseline::Top,
+            VerticalAlign::Center => Baseline::Center,
+            VerticalAlign::Baseline => Baseline::Baseline,
+            VerticalAlign::Bottom => Baseline::Bottom,
+        },
+        tolerance: realizer.tolerance(),
+    };
+    profile::text::text(&spec.text, &options, font.as_ref().map(|bytes| &bytes[..])).unplaced()
+}

@@ -1,0 +1,251 @@
+//! From the shape graph to solids and plane figures: picks the kernel, keeps results by node, and puts
+//! the place in the source on what the kernels report.
+//!
+//! Work is planned as waves of independent units (see [`structure`]); the units of a wave are made at
+//! the same time where that pays, and what is made depends on the graph and the tolerance alone.
+
+mod answers;
+mod empty;
+mod expression;
+mod failure;
+mod figure;
+mod files;
+mod heal;
+mod import;
+mod measure;
+mod paint;
+mod plane;
+mod primitive;
+mod store;
+mod structure;
+#[cfg(test)]
+mod tests;
+
+use std::{
+    collections::BTreeMap,
+    sync::{Arc, Mutex, OnceLock, PoisonError, RwLock, RwLockReadGuard},
+};
+
+use rayon::prelude::*;
+
+pub use self::{empty::warnings, failure::Made, figure::Figure, files::unreadable, store::Solid};
+use self::{
+    failure::failure,
+    paint::Paint,
+    store::{Entries, Entry, Store},
+    structure::Structure,
+};
+use crate::{
+    base::{Code, Diagnostic, Phase, Watch, World, watch::during},
+    geom::{Placement, Tolerance},
+    kernel::brep::Polyhedron,
+    shape::{Kind, Measures, Node, ShapeGraph, ShapeId},
+};
+
+/// Triangles that one solid, or all operands of one set operation together, may have.
+pub const MOST_TRIANGLES: usize = 50_000_000;
+
+/// Makes shapes of one graph and keeps them.
+pub struct Realizer<'w> {
+    world: &'w dyn World,
+    watch: &'w dyn Watch,
+    tolerance: OnceLock<Tolerance>,
+    structure: RwLock<Structure>,
+    entries: Entries,
+    files: Store<String, Arc<Vec<u8>>>,
+    measures: Store<ShapeId, Arc<Measures>>,
+    /// What readers left out, by the node that asked.
+    remarks: Mutex<BTreeMap<ShapeId, Diagnostic>>,
+}
+
+impl<'w> Realizer<'w> {
+    /// Reads files from `world` and tells `watch` what it is at. A tolerance given here holds against
+    /// what the model sets.
+    pub fn new(world: &'w dyn World, watch: &'w dyn Watch, tolerance: Option<Tolerance>) -> Self {
+        Realizer {
+            world,
+            watch,
+            tolerance: tolerance.map_or_else(OnceLock::new, OnceLock::from),
+            structure: RwLock::default(),
+            entries: Store::default(),
+            files: Store::default(),
+            measures: Store::default(),
+            remarks: Mutex::default(),
+        }
+    }
+
+    /// The chord error of all curves: what was given first, else the default.
+    pub fn tolerance(&self) -> Tolerance {
+        *self.tolerance.get_or_init(Tolerance::default)
+    }
+
+    /// Sets the tolerance unless one holds already.
+    pub fn settle_tolerance(&self, tolerance: Tolerance) {
+        self.tolerance.get_or_init(|| tolerance);
+    }
+
+    /// Makes everything that `roots` need, independent units at the same time. Failures are kept and
+    /// come out when a shape is asked for.
+    pub fn realize(&self, graph: &ShapeGraph, roots: &[ShapeId]) {
+        let mut structure = self.structure.write().unwrap_or_else(PoisonError::into_inner);
+        structure.extend(graph);
+        let waves = structure.plan(graph, roots, |id| self.entries.has(&id));
+        drop(structure);
+        if waves.is_empty() {
+            return;
+        }
+        self.watch.expect(waves.iter().map(Vec::len).sum());
+        during(self.watch, Phase::Solids, || {
+            for wave in waves {
+                self.make_wave(graph, &wave);
+            }
+        });
+    }
+
+    fn make_wave(&self, graph: &ShapeGraph, wave: &[ShapeId]) {
+        let make = |&id: &ShapeId| {
+            let entry = self.make(graph, id);
+            self.watch.step();
+            (id, entry)
+        };
+        let heavy = wave.iter().filter(|&&id| is_heavy(graph, id)).count();
+        let made: Vec<_> = match heavy {
+            0 | 1 => wave.iter().map(make).collect(),
+            _ => wave.par_iter().map(make).collect(),
+        };
+        self.entries.extend(made);
+    }
+
+    fn make(&self, graph: &ShapeGraph, id: ShapeId) -> Made<Entry> {
+        match graph.kind(id) {
+            Kind::Profile => figure::make(self, graph, id).map(|f| Entry::Figure(Arc::new(f))),
+            Kind::Solid if structure::operands(graph.node(id)).is_some() => {
+                expression::make(self, graph, id).map(Entry::Solid)
+            }
+            Kind::Solid => {
+                let solid = primitive::make(self, graph, id)?;
+                check_size(graph, id, solid.mesh().triangle_count())?;
+                Ok(Entry::Solid(Solid::exact(solid)))
+            }
+        }
+    }
+
+    /// The solid of a node.
+    ///
+    /// # Panics
+    /// When the node is a profile.
+    pub fn solid(&self, graph: &ShapeGraph, id: ShapeId) -> Made<Solid> {
+        self.realize(graph, &[id]);
+        self.solid_made(graph, id)
+    }
+
+    /// The figure of a profile node.
+    ///
+    /// # Panics
+    /// When the node is a solid.
+    pub fn figure(&self, graph: &ShapeGraph, id: ShapeId) -> Made<Arc<Figure>> {
+        self.realize(graph, &[id]);
+        self.figure_made(id)
+    }
+
+    /// The figure of a profile whose entry is made.
+    fn figure_made(&self, id: ShapeId) -> Made<Arc<Figure>> {
+        match self.entries.get(&id).expect("planned before")? {
+            Entry::Figure(figure) => Ok(figure),
+            Entry::Solid(_) => panic!("{id:?} is a solid"),
+        }
+    }
+
+    /// The solid of a node whose core is made: placed, tagged and painted.
+    fn solid_made(&self, graph: &ShapeGraph, id: ShapeId) -> Made<Solid> {
+        let wrapped = unwrap(graph, id, Paint::default())?;
+        let mut solid = self.core_made(wrapped.core)?;
+        if !wrapped.paint.is_none() {
+            let mesh = wrapped.paint.applied(solid.polyhedron.mesh());
+            solid.polyhedron = Arc::new(Polyhedron::trusted(mesh));
+        }
+        if !wrapped.placement.is_identity() {
+            solid.polyhedron = Arc::new(solid.polyhedron.placed(&wrapped.placement));
+        }
+        Ok(solid)
+    }
+
+    /// The solid of a core that is made.
+    fn core_made(&self, core: ShapeId) -> Made<Solid> {
+        match self.entries.get(&core).expect("planned before")? {
+            Entry::Solid(solid) => Ok(solid),
+            Entry::Figure(_) => panic!("{core:?} is a profile"),
+        }
+    }
+
+    /// Warnings about files since the last call, in the order of the nodes.
+    pub fn take_remarks(&self) -> Vec<Diagnostic> {
+        let mut remarks = self.remarks.lock().unwrap_or_else(PoisonError::into_inner);
+        std::mem::take(&mut *remarks).into_values().collect()
+    }
+
+    /// Remembers what a reader left out.
+    fn remark(&self, graph: &ShapeGraph, id: ShapeId, file: &str, notes: &[String]) {
+        if notes.is_empty() {
+            return;
+        }
+        let words = format!("`{file}` was not read whole");
+        let warning = Diagnostic::warning(Code::BadFile, words).label(graph.origin(id), "");
+        let warning = notes.iter().fold(warning, |warning, note| warning.note(note));
+        let mut remarks = self.remarks.lock().unwrap_or_else(PoisonError::into_inner);
+        remarks.insert(id, warning);
+    }
+
+    fn structure(&self) -> RwLockReadGuard<'_, Structure> {
+        self.structure.read().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// A solid taken out of its wrappers.
+struct Unwrapped {
+    core: ShapeId,
+    placement: Placement,
+    paint: Paint,
+}
+
+/// Takes the wrappers off a solid. Fails on a placement that flattens space.
+fn unwrap(graph: &ShapeGraph, id: ShapeId, paint: Paint) -> Made<Unwrapped> {
+    let mut found = Unwrapped { core: id, placement: Placement::IDENTITY, paint };
+    loop {
+        let node = graph.node(found.core);
+        let Some(child) = structure::wrapped(node) else { return Ok(found) };
+        match node {
+            Node::Transform { placement, .. } => {
+                if placement.inverse().is_none() {
+                    return Err(figure::flattened(graph, found.core));
+                }
+                found.placement = found.placement.after(placement);
+            }
+            Node::Tag { name, .. } => found.paint = found.paint.tagged(name),
+            Node::Paint { color, .. } => found.paint = found.paint.painted(*color),
+            _ => {}
+        }
+        found.core = child;
+    }
+}
+
+/// Whether making a unit is worth a thread.
+fn is_heavy(graph: &ShapeGraph, id: ShapeId) -> bool {
+    match graph.node(id) {
+        Node::Hull(_) | Node::ImportSolid { .. } | Node::Revolve { .. } => true,
+        Node::Extrude { twist, .. } => *twist != 0.0,
+        node => graph.kind(id) == Kind::Solid && structure::operands(node).is_some(),
+    }
+}
+
+/// Refuses more triangles than the limit.
+fn check_size(graph: &ShapeGraph, id: ShapeId, triangles: usize) -> Made<()> {
+    if triangles <= MOST_TRIANGLES {
+        return Ok(());
+    }
+    let words = format!("this needs {triangles} triangles; the limit is {MOST_TRIANGLES}");
+    let diagnostic = Diagnostic::error(Code::Limit, words)
+        .label(graph.origin(id), "")
+        .help("give a larger tolerance or fewer sides");
+    Err(failure(diagnostic))
+}

@@ -1,0 +1,128 @@
+//! Solids that no set operation makes: primitives, extrusions, hulls, imports.
+
+use glam::{DAffine2, DVec2, DVec3};
+
+use super::{
+    Realizer, check_size,
+    failure::{At, Coded, Made},
+    figure::{self, Figure},
+    import,
+    paint::Paint,
+};
+use crate::{
+    base::Code,
+    geom::Region,
+    kernel::brep::{
+        Polyhedron,
+        extrude::{ExtrudeError, extrude},
+        faces::{self, FacesError},
+        hull::{HullError, hull},
+        primitive::{self, circle_sides, sphere_sides, torus_sides},
+        revolve::{RevolveError, revolve},
+    },
+    shape::{Kind, Node, ShapeGraph, ShapeId},
+};
+
+impl Coded for ExtrudeError {
+    fn code(&self) -> Code {
+        match self {
+            ExtrudeError::TooManySlices(_) => Code::Limit,
+            _ => Code::Degenerate,
+        }
+    }
+}
+
+impl Coded for RevolveError {
+    fn code(&self) -> Code {
+        Code::Degenerate
+    }
+}
+
+impl Coded for HullError {
+    fn code(&self) -> Code {
+        Code::Degenerate
+    }
+}
+
+/// Makes the solid of a node that is no set operation and whose parts are made.
+pub fn make(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Made<Polyhedron> {
+    let origin = graph.origin(id);
+    let tolerance = realizer.tolerance();
+    match graph.node(id) {
+        Node::Box { min, max } => Ok(primitive::cuboid(*min, *max)),
+        Node::Cone { r1, r2, h, sides } => {
+            let sides = sides.unwrap_or_else(|| circle_sides(r1.max(*r2), tolerance));
+            check_size(graph, id, 4 * sides as usize)?;
+            Ok(primitive::cone(*r1, *r2, *h, sides))
+        }
+        Node::Sphere { r, sides } => {
+            let sides = sides.unwrap_or_else(|| sphere_sides(*r, tolerance));
+            check_size(graph, id, squared(sides, sides))?;
+            Ok(primitive::sphere(*r, sides))
+        }
+        Node::Torus { major, minor, sides } => {
+            let both = sides.map(|n| (n, n));
+            let (around, tube) = both.unwrap_or_else(|| torus_sides(*major, *minor, tolerance));
+            check_size(graph, id, squared(around, tube).saturating_mul(2))?;
+            Ok(primitive::torus(*major, *minor, around, tube))
+        }
+        Node::Polyhedron { points, faces } => faces::polyhedron(points, faces).at(origin),
+        Node::Extrude { profile, height, twist, scale } => {
+            let figure = realizer.figure_made(*profile)?;
+            let solid = extrude(&figure.region, *height, *twist, *scale, tolerance).at(origin)?;
+            Ok(painted(solid, &figure.paint).placed(&figure.frame))
+        }
+        Node::Revolve { profile, angle, sides } => {
+            let figure = realizer.figure_made(*profile)?;
+            check_size(graph, id, sides.unwrap_or(0) as usize)?;
+            let region = upright(&figure);
+            let solid = revolve(&region, *angle, *sides, tolerance).at(origin)?;
+            Ok(painted(solid, &figure.paint))
+        }
+        Node::Hull(list) => {
+            let mut points: Vec<DVec3> = vec![];
+            for &child in list.iter() {
+                points.extend(&realizer.solid_made(graph, child)?.polyhedron.mesh().points);
+            }
+            hull(&points).at(origin)
+        }
+        Node::ImportSolid { file, heal } => {
+            import::solid(realizer, file, *heal).map_err(|e| figure::placed(e, graph, id))
+        }
+        node => {
+            debug_assert_eq!(
+                node,
+                &Node::Empty(Kind::Solid),
+                "profiles and sets are made elsewhere"
+            );
+            Ok(Polyhedron::empty())
+        }
+    }
+}
+
+fn squared(a: u32, b: u32) -> usize {
+    (a as usize).saturating_mul(b as usize)
+}
+
+fn painted(solid: Polyhedron, paint: &Paint) -> Polyhedron {
+    if paint.is_none() { solid } else { Polyhedron::trusted(paint.applied(solid.mesh())) }
+}
+
+/// The region of a figure as `revolve` sees it: a plane that was moved within itself takes its region
+/// along.
+fn upright(figure: &Figure) -> Region {
+    let m = figure.frame.linear();
+    let t = figure.frame.offset();
+    let shift = DVec2::new(t.dot(m.x_axis), t.dot(m.y_axis));
+    figure::moved(&figure.region, &DAffine2::from_translation(shift))
+}
+
+impl Coded for FacesError {
+    fn code(&self) -> Code {
+        match self {
+            FacesError::NoFaces => Code::Degenerate,
+            FacesError::FewCorners { .. } | FacesError::NoSuchPoint { .. } => Code::OutOfRange,
+            FacesError::Defect(_) => Code::OpenMesh,
+        }
+    }
+}

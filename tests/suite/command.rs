@@ -1,0 +1,322 @@
+//! The command as a process: exit codes, files, streams.
+
+use std::{
+    fs,
+    io::Write,
+    path::Path,
+    process::{Output, Stdio},
+};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use super::errors::{katachi, run};
+
+fn folder(files: &[(&str, &str)]) -> TempDir {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for (name, text) in files {
+        fs::write(folder.path().join(name), text).expect("writable");
+    }
+    folder
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().expect("the command ends by itself")
+}
+
+fn err(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn out(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let Ok(entries) = fs::read_dir(folder) else { return vec![] };
+    let mut names: Vec<String> =
+        entries.map(|e| e.expect("readable").file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+/// Runs and expects an exit code and words on standard error.
+fn refused(folder: &Path, arguments: &[&str], exit: i32, words: &str) {
+    let output = run(folder, arguments);
+    let text = err(&output);
+    assert_eq!(code(&output), exit, "{arguments:?}\n{text}");
+    assert!(text.contains(words), "{arguments:?} does not say `{words}`:\n{text}");
+}
+
+#[test]
+fn a_box_becomes_an_stl_in_a_folder_that_is_made() {
+    let folder = folder(&[("a.kata", "box(10, 10, 10)")]);
+    let output = run(folder.path(), &["build", "a.kata", "-o", "deep/er"]);
+    assert_eq!(code(&output), 0, "{}", err(&output));
+    let bytes = fs::read(folder.path().join("deep/er/a.stl")).expect("written");
+    assert_eq!(bytes.len(), 84 + 12 * 50);
+    assert_eq!(names(&folder.path().join("deep/er")), ["a.stl"]);
+    assert_eq!(out(&output).trim(), "deep/er/a.stl");
+}
+
+#[test]
+fn the_model_may_come_from_standard_input() {
+    let folder = folder(&[]);
+    let mut command = katachi(&["measure", "-", "--json"]);
+    command.current_dir(folder.path()).stdin(Stdio::piped()).stdout(Stdio::piped());
+    let mut child = command.spawn().expect("starts");
+    child.stdin.take().expect("piped").write_all(b"part p = box(1, 2, 3)").expect("read");
+    let output = child.wait_with_output().expect("ends");
+    let value: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(value["parts"]["p"]["volume"], 6.0);
+}
+
+#[test]
+fn measures_have_the_keys_that_the_language_names() {
+    let folder = folder(&[("a.kata", "part good = box(1, 2, 3)\npart bad = box(1, 2)")]);
+    let output = run(folder.path(), &["measure", "a.kata", "--json"]);
+    assert_eq!(code(&output), 1);
+    let value: Value = serde_json::from_slice(&output.stdout).expect("only JSON");
+    let keys: Vec<&str> =
+        value["parts"]["good"].as_object().expect("there").keys().map(|k| &**k).collect();
+    let expected =
+        ["volume", "area", "bbox", "centroid", "triangles", "euler", "genus", "shells", "closed"];
+    assert_eq!(keys, expected);
+    assert_eq!(
+        value["parts"]["good"]["bbox"],
+        serde_json::json!([[-0.5, -1.0, 0.0], [0.5, 1.0, 3.0]])
+    );
+    assert_eq!(value["parts"].as_object().map(|o| o.len()), Some(1));
+    assert_eq!(value["views"], serde_json::json!({}));
+}
+
+#[test]
+fn wrong_use_ends_with_2() {
+    let folder = folder(&[("a.kata", "param w = 5mm\npart plate = box(w, 1, 1)")]);
+    let at = folder.path();
+    refused(at, &[], 2, "Usage");
+    refused(at, &["bild", "a.kata"], 2, "build");
+    refused(at, &["build", "a.kata", "-p", "plat"], 2, "did you mean `plate`?");
+    refused(at, &["build", "a.kata", "-p", "quite_other"], 2, "the outputs are plate");
+    refused(at, &["build", "a.kata", "--format", "step"], 2, "3mf");
+    refused(at, &["build", "a.kata", "--tolerance", "0mm"], 2, "greater than zero");
+    refused(at, &["build", "a.kata", "-j", "0"], 2, "1..=1024");
+    refused(at, &["build", "a.kata", "-D", "w"], 2, "NAME=VALUE");
+    refused(at, &["build", "a.kata", "-D", "@none.json"], 2, "none.json");
+    assert_eq!(code(&run(at, &["--help"])), 0);
+    assert_eq!(code(&run(at, &["--version"])), 0);
+}
+
+#[test]
+fn parameters_from_outside_are_checked() {
+    let text = "param width = 5mm in 1mm..9mm\npart p = box(width, 1, 1)";
+    let folder =
+        folder(&[("a.kata", text), ("w.json", "{\"width\": 4}"), ("bad.json", "{\"with\": 4}")]);
+    let at = folder.path();
+    refused(at, &["build", "a.kata", "-D", "widht=3mm"], 1, "width");
+    refused(at, &["build", "a.kata", "-D", "width=30deg"], 1, "length");
+    refused(at, &["build", "a.kata", "-D", "width=10mm"], 1, "9");
+    refused(at, &["build", "a.kata", "-D", "width=("], 1, "-D width:1:");
+    refused(at, &["build", "a.kata", "-D", "@bad.json"], 1, "width");
+    for (define, volume) in [("width=0.2cm", 2.0), ("@w.json", 4.0)] {
+        let output = run(at, &["measure", "a.kata", "--json", "-D", define]);
+        let value: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        assert_eq!(value["parts"]["p"]["volume"], volume, "{define}");
+    }
+}
+
+#[test]
+fn sources_that_are_none_are_refused() {
+    let folder = folder(&[("a.kata", "box(1, 1, 1)")]);
+    let at = folder.path();
+    fs::write(at.join("rubbish.kata"), [0x7f, b'E', b'L', b'F', 0, 0xff, 0xfe]).expect("writable");
+    fs::create_dir(at.join("folder.kata")).expect("writable");
+    refused(at, &["build", "rubbish.kata"], 1, "not a text file");
+    refused(at, &["build", "missing.kata"], 1, "no such file");
+    refused(at, &["build", "folder.kata"], 1, "not a file");
+    refused(at, &["build", "no/such/folder.kata"], 2, "no such file");
+    refused(at, &["build", "a.kata", "--root", "folder.kata"], 2, "outside the root");
+}
+
+#[test]
+fn what_cannot_be_written_is_said_and_the_rest_is_written() {
+    let text = "part a = box(1, 1, 1)\npart b = box(2, 2, 2)\nexport \"b.off\" = b\n";
+    let folder = folder(&[("m.kata", text), ("taken", "a file")]);
+    let at = folder.path();
+    refused(at, &["build", "m.kata", "-o", "taken"], 1, "taken");
+    fs::create_dir_all(at.join("out/a.stl")).expect("writable");
+    refused(at, &["build", "m.kata"], 1, "a folder stands there");
+    assert_eq!(names(&at.join("out")), ["a.stl", "b.off"]);
+}
+
+#[test]
+fn exports_stay_in_the_output_folder_and_have_a_known_format() {
+    let text = "part a = box(1, 1, 1)\nexport \"../a.stl\" = a\nexport \"a.step\" = a\nexport \"in/a.obj\" = a";
+    let folder = folder(&[("m.kata", text)]);
+    let output = run(folder.path(), &["build", "m.kata", "--diagnostics", "short"]);
+    assert_eq!(code(&output), 1);
+    assert!(err(&output).contains("outside the output folder"), "{}", err(&output));
+    assert!(err(&output).contains("m.kata:3:"), "{}", err(&output));
+    assert_eq!(names(folder.path()), ["m.kata", "out"]);
+    assert_eq!(names(&folder.path().join("out")), ["in"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_write_leaves_the_old_file_and_no_part_of_the_new_one() {
+    let folder = folder(&[("ball.kata", "sphere(10, sides = 100)")]);
+    let at = folder.path();
+    fs::create_dir(at.join("out")).expect("writable");
+    fs::write(at.join("out/ball.stl"), "old").expect("writable");
+    // Files may not grow beyond 8 blocks: writing fails half way.
+    let script = "trap '' XFSZ; ulimit -f 8; exec \"$0\" build ball.kata";
+    let mut command = std::process::Command::new("sh");
+    command.args(["-c", script, env!("CARGO_BIN_EXE_katachi")]).current_dir(at);
+    let output = command.output().expect("starts");
+    assert_eq!(code(&output), 1, "{}", err(&output));
+    assert_eq!(names(&at.join("out")), ["ball.stl"]);
+    assert_eq!(fs::read(at.join("out/ball.stl")).expect("kept"), b"old");
+}
+
+#[test]
+fn the_number_of_threads_does_not_show_in_the_bytes() {
+    let text = "a = sphere(10) - cylinder(3, 30).move(z = -15)\n\
+                part one = a\npart two = a.rotate(x = 17) & box(15, 15, 15)\n\
+                part three = hull([a, box(4, 4, 30)])\nexport \"all.3mf\" = { one, two, three }";
+    let folder = folder(&[("m.kata", text)]);
+    for jobs in ["1", "2"] {
+        let output = run(folder.path(), &["build", "m.kata", "-j", jobs, "-o", jobs]);
+        assert_eq!(code(&output), 0, "{}", err(&output));
+    }
+    let bytes = |jobs: &str| fs::read(folder.path().join(jobs).join("all.3mf")).expect("written");
+    assert!(bytes("1") == bytes("2"), "the files differ");
+}
+
+#[test]
+fn a_limit_ends_with_5() {
+    let folder = folder(&[("a.kata", "sphere(10, sides = 100000)")]);
+    refused(folder.path(), &["build", "a.kata"], 5, "the limit is");
+}
+
+#[test]
+fn tests_are_run_one_line_each() {
+    let text = "part p = box(1, 2, 3)\n\
+                test \"right\" { assert volume(p) == 6mm^3 }\n\
+                test \"wrong\" { assert volume(p) == 7mm^3 }\n";
+    let folder = folder(&[("m.kata", text)]);
+    let output = run(folder.path(), &["test", "m.kata"]);
+    assert_eq!(code(&output), 3, "{}", err(&output));
+    assert_eq!(out(&output), "ok     right\nFAILED wrong\n1 passed, 1 failed\n");
+    let output = run(folder.path(), &["test", "m.kata", "--filter", "right"]);
+    assert_eq!((code(&output), out(&output).lines().last()), (0, Some("1 passed, 0 failed")));
+}
+
+#[test]
+fn goldens_are_written_when_asked_for() {
+    let text =
+        "part p = box(1, 2, 3)\ntest \"as before\" { golden(\"ref/p.stl\", p, volume = 1e-6) }";
+    let folder = folder(&[("m.kata", text)]);
+    assert_eq!(code(&run(folder.path(), &["test", "m.kata"])), 3);
+    let output = run(folder.path(), &["test", "m.kata", "--update"]);
+    assert_eq!(code(&output), 0, "{}", err(&output));
+    assert_eq!(names(&folder.path().join("ref")), ["p.stl"]);
+    assert_eq!(code(&run(folder.path(), &["test", "m.kata"])), 0);
+}
+
+#[test]
+fn a_new_project_builds_and_its_test_passes() {
+    let folder = folder(&[]);
+    let at = folder.path();
+    assert_eq!(code(&run(at, &["new", "lid"])), 0);
+    assert_eq!(names(&at.join("lid")), ["README.md", "katachi.toml", "lid.kata"]);
+    let output = run(at, &["test", "lid/lid.kata"]);
+    assert_eq!(code(&output), 0, "{}", err(&output));
+    assert_eq!(code(&run(&at.join("lid"), &["build", "lid.kata"])), 0);
+    refused(at, &["new", "lid"], 2, "not empty");
+}
+
+#[test]
+fn parameters_are_listed() {
+    let text = "/// Overall width\nparam width = 60mm in 20mm..120mm step 1mm\nparam style = \"lip\" in [\"lip\", \"flat\"]\nbox(width, 1, 1)";
+    let folder = folder(&[("m.kata", text)]);
+    let output = run(folder.path(), &["params", "m.kata", "--json"]);
+    let value: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let width = &value["params"][0];
+    assert_eq!(
+        (&width["name"], &width["value"], &width["max"]),
+        (&"width".into(), &60.0.into(), &120.0.into())
+    );
+    assert_eq!(width["doc"], "Overall width");
+    assert_eq!(value["params"][1]["choices"], serde_json::json!(["lip", "flat"]));
+    assert!(out(&run(folder.path(), &["params", "m.kata"])).contains("width"));
+}
+
+#[test]
+fn timings_name_every_phase() {
+    let folder = folder(&[("m.kata", "box(1, 1, 1) - sphere(0.4)")]);
+    let output = run(folder.path(), &["build", "m.kata", "--timings", "times/t.json"]);
+    assert_eq!(code(&output), 0, "{}", err(&output));
+    let text = fs::read(folder.path().join("times/t.json")).expect("written");
+    let value: Value = serde_json::from_slice(&text).expect("JSON");
+    let keys: Vec<&str> = value.as_object().expect("object").keys().map(|k| &**k).collect();
+    let expected =
+        ["parse_ms", "eval_ms", "solids_ms", "drawings_ms", "halftones_ms", "write_ms", "total_ms"];
+    assert_eq!(keys, expected);
+}
+
+#[test]
+fn a_reader_that_has_seen_enough_is_no_error() {
+    let folder = folder(&[("m.kata", "box(1, 1, 1)")]);
+    let mut command = katachi(&["measure", "m.kata"]);
+    command.current_dir(folder.path()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("starts");
+    drop(child.stdout.take());
+    let output = child.wait_with_output().expect("ends");
+    assert_eq!((code(&output), err(&output)), (0, String::new()));
+}
+
+/// A box of `n` by `n` squares a side, as binary STL.
+fn large_stl(n: u32) -> Vec<u8> {
+    let mut triangles: Vec<[[f32; 3]; 3]> = vec![];
+    for axis in 0..3 {
+        for side in [0, n] {
+            for i in 0..n {
+                for j in 0..n {
+                    let corner = |a: u32, b: u32| {
+                        let mut p = [0.0; 3];
+                        p[axis] = side as f32;
+                        p[(axis + 1) % 3] = (i + a) as f32;
+                        p[(axis + 2) % 3] = (j + b) as f32;
+                        p
+                    };
+                    let [p, q, r, s] = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
+                    let turned =
+                        if side == 0 { [[p, r, q], [p, s, r]] } else { [[p, q, r], [p, r, s]] };
+                    triangles.extend(turned);
+                }
+            }
+        }
+    }
+    let mut bytes = vec![0; 80];
+    bytes.extend((triangles.len() as u32).to_le_bytes());
+    for triangle in &triangles {
+        bytes.extend([0; 12]);
+        triangle.iter().flatten().for_each(|x| bytes.extend(x.to_le_bytes()));
+        bytes.extend([0; 2]);
+    }
+    bytes
+}
+
+#[test]
+#[ignore = "needs seconds and gigabytes in a debug build; .ci/run runs it in release"]
+fn a_200_mb_stl_is_read() {
+    let folder = folder(&[("m.kata", "import(\"large.stl\")")]);
+    let n: u32 = 578;
+    let bytes = large_stl(n);
+    assert!(bytes.len() > 200_000_000);
+    fs::write(folder.path().join("large.stl"), bytes).expect("writable");
+    let output = run(folder.path(), &["measure", "m.kata", "--json"]);
+    assert_eq!(code(&output), 0, "{}", err(&output));
+    let value: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(value["parts"]["m"]["volume"], f64::from(n).powi(3));
+}

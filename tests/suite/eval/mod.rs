@@ -1,0 +1,5 @@
+//! Evaluation, tested from outside with a host of string literals.
+
+mod host;
+mod library;
+mod values;

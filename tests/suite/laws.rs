@@ -1,0 +1,6 @@
+//! Laws and hard cases of the set operations.
+
+mod cases;
+mod properties;
+mod random;
+mod solids;

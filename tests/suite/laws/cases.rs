@@ -1,0 +1,174 @@
+//! Hard cases by name: touching, coplanar and nested operands, unrotated and rotated.
+
+use katachi::kernel::brep::{
+    Polyhedron,
+    boolean::{Tree, evaluate},
+};
+
+use super::solids::*;
+
+fn solid(tree: &Tree) -> Polyhedron {
+    evaluate(tree).expect("a result").solid
+}
+
+/// What a case must give: volume, triangles, Euler number; upright and turned.
+#[track_caller]
+fn check(tree: Tree, expected_volume: f64, triangles: usize, euler_number: i64) {
+    for tree in [tree.clone(), turned([17.0, 23.0, 41.0], tree)] {
+        let solid = solid(&tree);
+        let found = volume(&solid);
+        assert!(
+            (found - expected_volume).abs() <= 1e-9 * expected_volume.abs().max(1.0),
+            "volume {found}, expected {expected_volume}"
+        );
+        assert_eq!(euler(&solid), euler_number, "Euler number");
+        assert_eq!(solid.mesh().triangle_count(), triangles, "triangles");
+    }
+}
+
+fn union(parts: Vec<Tree>) -> Tree {
+    Tree::Union(parts)
+}
+
+fn less(parts: Vec<Tree>) -> Tree {
+    Tree::Difference(parts)
+}
+
+#[test]
+fn crossing_boxes() {
+    let (a, b) = (block([0.0; 3], [2.0; 3]), block([1.0; 3], [3.0; 3]));
+    check(union(vec![a.clone(), b.clone()]), 15.0, 36, 2);
+    check(less(vec![a.clone(), b.clone()]), 7.0, 24, 2);
+    check(Tree::Intersection(vec![a, b]), 1.0, 12, 2);
+}
+
+#[test]
+fn equal_boxes() {
+    let a = block([0.1, 0.2, 0.3], [1.0, 2.0, 3.0]);
+    let v = 0.9 * 1.8 * 2.7;
+    check(union(vec![a.clone(), a.clone()]), v, 12, 2);
+    check(Tree::Intersection(vec![a.clone(), a.clone()]), v, 12, 2);
+    check(less(vec![a.clone(), a]), 0.0, 0, 0);
+}
+
+#[test]
+fn face_to_face() {
+    let (a, b) = (block([0.0; 3], [1.0; 3]), block([1.0, 0.0, 0.0], [2.0, 1.0, 1.0]));
+    check(union(vec![a.clone(), b.clone()]), 2.0, 12, 2);
+    check(less(vec![a.clone(), b.clone()]), 1.0, 12, 2);
+    check(Tree::Intersection(vec![a, b]), 0.0, 0, 0);
+}
+
+#[test]
+fn partial_faces() {
+    let (a, b) = (block([0.0; 3], [2.0; 3]), block([2.0, 1.0, 1.0], [3.0, 3.0, 3.0]));
+    check(union(vec![a, b]), 12.0, 32, 2);
+}
+
+#[test]
+fn edge_to_edge() {
+    let (a, b) = (block([0.0; 3], [1.0; 3]), block([1.0, 1.0, 0.0], [2.0, 2.0, 1.0]));
+    check(union(vec![a, b]), 2.0, 24, 4);
+}
+
+#[test]
+fn corner_to_corner() {
+    let (a, b) = (block([0.0; 3], [1.0; 3]), block([1.0; 3], [2.0; 3]));
+    check(union(vec![a, b]), 2.0, 24, 4);
+}
+
+#[test]
+fn a_ring_that_touches_itself_along_an_edge() {
+    let ring = union(vec![
+        block([0.0, 0.0, 0.0], [3.0, 1.0, 1.0]),
+        block([0.0, 0.0, 0.0], [1.0, 3.0, 1.0]),
+        block([0.0, 2.0, 0.0], [2.0, 3.0, 1.0]),
+        block([2.0, 0.0, 0.0], [3.0, 2.0, 1.0]),
+    ]);
+    for tree in [ring.clone(), turned([17.0, 23.0, 41.0], ring)] {
+        let solid = solid(&tree);
+        assert!((volume(&solid) - 7.0).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn flush_notch() {
+    let a = block([0.0; 3], [3.0; 3]);
+    let notch = block([1.0, 0.0, 2.0], [2.0, 3.0, 3.0]);
+    check(less(vec![a, notch]), 24.0, 28, 2);
+}
+
+#[test]
+fn cavity() {
+    let (a, b) = (block([0.0; 3], [3.0; 3]), block([1.0; 3], [2.0; 3]));
+    check(less(vec![a, b]), 26.0, 24, 4);
+}
+
+#[test]
+fn nested_and_disjoint() {
+    let (a, b) = (block([0.0; 3], [3.0; 3]), block([1.0; 3], [2.0; 3]));
+    check(union(vec![a.clone(), b.clone()]), 27.0, 12, 2);
+    check(Tree::Intersection(vec![a.clone(), b]), 1.0, 12, 2);
+    let far = block([5.0; 3], [6.0; 3]);
+    check(union(vec![a.clone(), far.clone()]), 28.0, 24, 4);
+    check(less(vec![a.clone(), far.clone()]), 27.0, 12, 2);
+    check(Tree::Intersection(vec![a, far]), 0.0, 0, 0);
+}
+
+#[test]
+fn through_hole() {
+    let (a, b) = (block([0.0; 3], [3.0; 3]), block([1.0, 1.0, 0.0], [2.0, 2.0, 3.0]));
+    check(less(vec![a, b]), 24.0, 32, 0);
+}
+
+#[test]
+fn cylinder_flush_in_a_box() {
+    let box_volume = 4.0 * 4.0 * 2.0;
+    let rod = cylinder([2.0, 2.0], 1.0, 0.0, 2.0, 32);
+    let hole = volume(&rod);
+    let tree =
+        |op: fn(Vec<Tree>) -> Tree| op(vec![block([0.0; 3], [4.0, 4.0, 2.0]), leaf(rod.clone())]);
+    check(tree(Tree::Union), box_volume, 12, 2);
+    let snapped = |tree: Tree, expected: f64| {
+        let upright = solid(&tree);
+        let turned = solid(&turned([17.0, 23.0, 41.0], tree));
+        assert!((volume(&upright) - expected).abs() < 1e-6);
+        assert!((volume(&turned) - volume(&upright)).abs() < 1e-9);
+        assert_eq!(upright.mesh().triangle_count(), turned.mesh().triangle_count());
+        assert_eq!(upright.mesh().triangle_count(), 2 * 36 + 8 + 2 * 32);
+        assert_eq!(euler(&upright), 0);
+    };
+    snapped(tree(Tree::Difference), box_volume - hole);
+}
+
+#[test]
+fn touching_cubes() {
+    let mut cubes = vec![];
+    for i in 0..512u32 {
+        let at = [i % 8, i / 8 % 8, i / 64].map(f64::from);
+        cubes.push(block(at, at.map(|c| c + 1.0)));
+    }
+    check(union(cubes), 512.0, 12, 2);
+}
+
+#[test]
+fn nested_rotations_share_a_frame() {
+    let inner = union(vec![block([0.0; 3], [2.0; 3]), block([2.0, 0.0, 0.0], [4.0, 2.0, 2.0])]);
+    let tree = union(vec![
+        turned([17.0, 23.0, 41.0], inner.clone()),
+        turned([17.0, 23.0, 41.0], moved([0.0, 2.0, 0.0], inner)),
+    ]);
+    check(tree, 32.0, 12, 2);
+}
+
+#[test]
+fn untouched_corners_keep_their_coordinates() {
+    let a = cuboid([0.1, 1.0 / 3.0, -0.7], [2.0 / 3.0, 12.345, 9.9]);
+    let before = a.mesh().points.clone();
+    let cut = block([-1.0, -1.0, 5.0], [20.0, 20.0, 20.0]);
+    let after = solid(&less(vec![leaf(a), cut]));
+    for p in &before[..4] {
+        assert!(after.mesh().points.contains(p), "{p}");
+    }
+    assert_eq!(after.mesh().points.iter().filter(|p| p.z == 5.0).count(), 4);
+}
