@@ -6,7 +6,7 @@ use thiserror::Error;
 use super::{
     Polyhedron,
     band::add_point,
-    flank::{Edge, Origins, edges, lines},
+    flank::{Edge, Origins, edges, encloses, lines},
     primitive::cone_surface,
 };
 use crate::geom::{
@@ -21,8 +21,8 @@ pub const MAX_SLICES: u32 = 20_000;
 /// Why there is no extrusion.
 #[derive(Clone, Copy, PartialEq, Debug, Error)]
 pub enum ExtrudeError {
-    /// No area to draw up.
-    #[error("the profile is empty; an extrusion needs one with area")]
+    /// No area to draw up: no contour, or one with fewer than three finite corners.
+    #[error("the profile is empty or broken; an extrusion needs one with area")]
     EmptyProfile,
     /// Height not positive.
     #[error("the height is {0} mm; it must be positive")]
@@ -91,7 +91,7 @@ struct Rise {
 impl Rise {
     fn check(&self, region: &Region) -> Result<(), ExtrudeError> {
         let Rise { height, twist, scale } = *self;
-        if region.is_empty() {
+        if !encloses(region) {
             return Err(ExtrudeError::EmptyProfile);
         }
         if !(height > 0.0 && height.is_finite()) {
