@@ -100,7 +100,7 @@ pub struct Text {
 /// use katachi::kernel::profile::{TextOptions, text};
 /// let set = text("Katachi", &TextOptions::default(), None).unwrap();
 /// assert_eq!(set.region.pieces.len(), 8); // the dot of the i is a piece of its own
-/// assert!((set.width - 44.45).abs() < 0.1);
+/// assert!((set.width - 45.24).abs() < 0.01);
 /// ```
 pub fn text(text: &str, options: &TextOptions, font: Option<&[u8]>) -> Result<Text, ProfileError> {
     let size = options.size;
