@@ -384,3 +384,21 @@ fn mutated_files_are_read_or_refused() {
         }
     }
 }
+
+#[test]
+fn drawings_that_multiply_themselves_are_refused() {
+    let head = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"9\" height=\"9\">";
+    let mut uses = format!("{head}<defs><rect id=\"a0\" width=\"5\" height=\"5\"/>");
+    for level in 1..30 {
+        let one = format!("<use href=\"#a{}\"/>", level - 1);
+        uses += &format!("<g id=\"a{level}\">{}</g>", one.repeat(10));
+    }
+    uses += "</defs><use href=\"#a29\"/></svg>";
+    assert!(read_profile("a.svg", uses.as_bytes(), Tolerance::DEFAULT).is_err());
+    let deep = format!(
+        "{head}{}<rect width=\"5\" height=\"5\"/>{}</svg>",
+        "<g>".repeat(50_000),
+        "</g>".repeat(50_000)
+    );
+    assert!(read_profile("a.svg", deep.as_bytes(), Tolerance::DEFAULT).is_err());
+}
