@@ -5,8 +5,8 @@
 //! | [`stl`] binary | mm | `f32` | united | no | triangles |
 //! | [`stl`] ASCII | mm | `f64` | one `solid` each | no | triangles |
 //! | [`obj`] | mm | `f64` | one object each | no | polygons |
-//! | [`off`] | mm | `f64` | united | by face | polygons |
-//! | [`ply`] | mm | `f64` | united | by face | polygons |
+//! | [`off`] | mm | `f64` | united | by face | triangles |
+//! | [`ply`] | mm | `f64` | united | by face | triangles |
 //! | [`threemf`] | mm | `f64` | one object each | by face | triangles |
 //! | [`glb`] | m, y up | `f32` | one node each | by face | triangles |
 //!

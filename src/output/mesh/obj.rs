@@ -26,7 +26,7 @@ fn write_object(text: &mut Vec<u8>, part: &Part, first: usize) -> std::io::Resul
     for p in &part.mesh.points {
         writeln!(text, "v {} {} {}", Shortest(p.x), Shortest(p.y), Shortest(p.z))?;
     }
-    for (_, facet) in part.facets(usize::MAX) {
+    for (_, facet) in part.facets() {
         for polygon in facet.polygons() {
             write!(text, "f")?;
             for &corner in polygon {

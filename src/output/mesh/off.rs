@@ -1,5 +1,5 @@
-//! OFF, the object file format of Geomview: polygons, with a colour at the end of a face's line where
-//! it has one.
+//! OFF, the object file format of Geomview, with a colour at the end of a face's line where it has
+//! one. Triangles only: several common readers refuse faces of differing lengths.
 
 use std::io::Write;
 
@@ -29,10 +29,10 @@ fn write_points(text: &mut Vec<u8>, part: &Part) -> std::io::Result<()> {
 /// Returns the number of faces written.
 fn write_faces(text: &mut Vec<u8>, part: &Part, first: usize) -> std::io::Result<usize> {
     let mut count = 0;
-    for (face, facet) in part.facets(usize::MAX) {
-        for polygon in facet.polygons() {
-            write!(text, "{}", polygon.len())?;
-            for &corner in polygon {
+    for (face, triangles) in part.faces() {
+        for triangle in triangles {
+            write!(text, "{}", triangle.len())?;
+            for &corner in triangle {
                 write!(text, " {}", first + corner as usize)?;
             }
             if let Some(color) = face.origin().color {

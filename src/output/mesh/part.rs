@@ -55,11 +55,11 @@ impl<'a> Part<'a> {
         })
     }
 
-    /// The faces as polygons where a fan reader gets them right and they have at most `most` corners.
-    pub fn facets(&self, most: usize) -> impl Iterator<Item = (FaceRef<'a>, Facet<'_>)> {
+    /// The faces as polygons where a fan reader gets them right.
+    pub fn facets(&self) -> impl Iterator<Item = (FaceRef<'a>, Facet<'_>)> {
         self.faces().map(move |(face, triangles)| {
-            let whole = face.loops().len() == 1 && face.outer().len() <= most;
-            let whole = whole && (face.outer().len() == 3 || is_convex(self.mesh, face));
+            let triangle = face.outer().len() == 3;
+            let whole = face.loops().len() == 1 && (triangle || is_convex(self.mesh, face));
             let facet =
                 if whole { Facet::Polygon(face.outer()) } else { Facet::Triangles(triangles) };
             (face, facet)

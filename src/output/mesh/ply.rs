@@ -1,10 +1,7 @@
 //! PLY, the Stanford polygon format: binary, little endian, `double` coordinates, colours on faces if
-//! any face has one.
+//! any face has one. Triangles only: several common readers refuse lists of differing lengths.
 
 use super::part::{PLAIN, Part};
-
-/// A face's corners are counted in one byte.
-const MOST_CORNERS: usize = u8::MAX as usize;
 
 pub(super) fn write(parts: &[Part]) -> Vec<u8> {
     let coloured = parts.iter().any(Part::is_coloured);
@@ -36,11 +33,11 @@ fn header(points: usize, faces: usize, coloured: bool) -> String {
 /// Returns the number of faces written.
 fn push_faces(body: &mut Vec<u8>, part: &Part, first: u32, coloured: bool) -> usize {
     let mut count = 0;
-    for (face, facet) in part.facets(MOST_CORNERS) {
+    for (face, triangles) in part.faces() {
         let color = face.origin().color.unwrap_or(PLAIN);
-        for polygon in facet.polygons() {
-            body.push(polygon.len() as u8);
-            polygon.iter().for_each(|c| body.extend_from_slice(&(first + c).to_le_bytes()));
+        for triangle in triangles {
+            body.push(triangle.len() as u8);
+            triangle.iter().for_each(|c| body.extend_from_slice(&(first + c).to_le_bytes()));
             if coloured {
                 body.extend_from_slice(&[color.r, color.g, color.b]);
             }

@@ -195,7 +195,7 @@ fn ply_reads_back_with_colours() {
     let end = b"end_header\n";
     let split = bytes.windows(end.len()).position(|w| w == end).unwrap() + end.len();
     let header = std::str::from_utf8(&bytes[..split]).unwrap();
-    assert!(header.contains("element vertex 12\n") && header.contains("element face 14\n"));
+    assert!(header.contains("element vertex 12\n") && header.contains("element face 20\n"));
     let body = &bytes[split..];
     let coordinate = |i: usize| f64::from_le_bytes(body[8 * i..8 * i + 8].try_into().unwrap());
     let points: Vec<DVec3> = (0..12)

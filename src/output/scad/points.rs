@@ -44,7 +44,7 @@ pub(super) fn polyhedron<'a>(
 /// A mesh as `polyhedron`: convex faces whole, others as triangles.
 pub(super) fn mesh(mesh: &PolyMesh) -> String {
     let part = Part::new(&NamedMesh { name: "", mesh });
-    let facets: Vec<_> = part.facets(usize::MAX).map(|(_, facet)| facet).collect();
+    let facets: Vec<_> = part.facets().map(|(_, facet)| facet).collect();
     polyhedron(&mesh.points, facets.iter().flat_map(|facet| facet.polygons()))
 }
 
