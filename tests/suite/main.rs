@@ -8,5 +8,6 @@ mod floors;
 mod grammar;
 mod laws;
 mod readers;
+mod readme;
 mod scad;
 mod sources;
