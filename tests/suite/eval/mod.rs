@@ -2,4 +2,5 @@
 
 mod host;
 mod library;
+mod refusals;
 mod values;
