@@ -11,6 +11,9 @@ pub const LIMIT: u32 = 1024;
 /// What a bracket counts: it stands for several levels of tree.
 pub const BRACKET: u32 = 4;
 
+/// More statements than these are not spoken of.
+const MAX_FAULTS: usize = 100;
+
 /// What deepens the tree beside brackets.
 const DEEPENING: TokenSet = TokenSet::OPERATORS.or(TokenSet::of(&[
     Token::Not,
@@ -51,10 +54,11 @@ impl Level {
 
 /// Replaces every top-level statement that is nested too deep by one bad token behind its `=`, with
 /// an error at the place where it goes too far. Brackets must be paired.
-pub fn limit(source: SourceId, tokens: Tokens) -> (Tokens, Vec<Diagnostic>) {
+/// What was said of such a statement before is taken back: it is one mistake.
+pub fn limit(source: SourceId, tokens: Tokens, said: &mut Vec<Diagnostic>) -> Tokens {
     let faults = too_deep(&tokens);
     if faults.is_empty() {
-        return (tokens, vec![]);
+        return tokens;
     }
     let mut out = Tokens::with_capacity(tokens.len());
     let mut copied = 0;
@@ -68,9 +72,12 @@ pub fn limit(source: SourceId, tokens: Tokens) -> (Tokens, Vec<Diagnostic>) {
     }
     out.kinds.extend_from_slice(&tokens.kinds[copied..]);
     out.spans.extend_from_slice(&tokens.spans[copied..]);
-    let place = |fault: &Fault| tokens.spans[fault.at];
-    let diagnostics = faults.iter().map(|fault| diagnostic(source, place(fault))).collect();
-    (out, diagnostics)
+    for fault in faults.iter().take(MAX_FAULTS) {
+        let (start, end) = (tokens.spans[fault.start].0, tokens.spans[fault.end - 1].1);
+        said.retain(|d| d.span().is_none_or(|span| span.start < start || span.start > end));
+        said.push(diagnostic(source, tokens.spans[fault.at]));
+    }
+    out
 }
 
 fn diagnostic(source: SourceId, (start, end): (u32, u32)) -> Diagnostic {

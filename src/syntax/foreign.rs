@@ -75,7 +75,7 @@ fn quoted_length(text: &str) -> usize {
     let line = text.lines().next().unwrap_or("");
     let mut characters = line.char_indices();
     let first = characters.next().map_or(1, |(_, c)| c.len_utf8());
-    let closing = characters.find(|(_, c)| matches!(c, '\'' | '”' | '’' | '"' | '“'));
+    let closing = characters.find(|(_, c)| matches!(c, '\'' | '”' | '’' | '"' | '“' | '‘'));
     closing.map_or(first, |(at, c)| at + c.len_utf8())
 }
 

@@ -242,7 +242,10 @@ impl<'s> Lexer<'s> {
         self.out.tokens.truncate(first);
         self.out.tokens.push(Token::Bad, (start, end as u32));
         let place = self.span(start as usize, end);
-        self.out.diagnostics.retain(|d| d.span().is_none_or(|span| span.start < start));
+        let inside = |d: &Diagnostic| d.span().is_some_and(|span| span.start >= start);
+        while self.out.diagnostics.last().is_some_and(inside) {
+            self.out.diagnostics.pop();
+        }
         self.report(
             Diagnostic::error(Code::BadToken, "this string is not closed on its line")
                 .label(place, "no closing `\"` follows")

@@ -94,3 +94,115 @@ fn space_follows(text: &str, at: u32) -> bool {
     let rest = &text[at as usize..];
     rest.starts_with(char::is_whitespace) || rest.starts_with("//") || rest.starts_with("/*")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{base::SourceId, syntax::lexer::lex};
+
+    /// How many statements the lines are.
+    fn statements(text: &str) -> usize {
+        let tokens = newlines(text, &lex(SourceId(0), text).tokens);
+        let mut depth = 0;
+        let mut ends = 0;
+        for kind in &tokens.kinds {
+            depth += i32::from(TokenSet::OPENERS.has(*kind));
+            depth -= i32::from(TokenSet::CLOSERS.has(*kind));
+            ends += usize::from(*kind == Token::Newline && depth == 0);
+        }
+        ends + usize::from(!tokens.is_empty())
+    }
+
+    #[test]
+    fn a_line_end_ends_a_statement() {
+        for (text, count) in [
+            ("", 0),
+            ("\n\n", 0),
+            ("// only a comment\n", 0),
+            ("a = 1\nb = 2", 2),
+            ("\n\na = 1\n\n\r\n// c\nb = 2\n\n", 2),
+            ("a\n-b", 2),
+            ("a\n+b", 2),
+            ("a\n[0]", 2),
+            ("a\n(b)", 2),
+            ("a\n..b", 2),
+            ("a\nstep = 1", 2),
+            ("a\nwhen = 1", 2),
+            ("a\nwith = 1", 2),
+            ("a\nstepped", 2),
+            ("a\norder", 2),
+            ("a\nnot b", 2),
+            ("a\nif b { 1 }", 2),
+            ("/// doc\na = 1\n/// at the end", 2),
+        ] {
+            assert_eq!(statements(text), count, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn a_line_end_goes_on() {
+        for text in [
+            "f(1,\n2\n)",
+            "[1\n, 2\n]",
+            "a = {\n b = 1\n}",
+            "a =\n1",
+            "a +\nb",
+            "a -\n\n// c\nb",
+            "a *\nb",
+            "a /\nb",
+            "a %\nb",
+            "a &\nb",
+            "a ^\nb",
+            "a ++\nb",
+            "a ==\nb",
+            "a !=\nb",
+            "a <\nb",
+            "a <=\nb",
+            "a >\nb",
+            "a >=\nb",
+            "a ..\nb",
+            "a ..<\nb",
+            "a and\nb",
+            "a or\nb",
+            "a = not\nb",
+            "a, \nb",
+            "a.\nb",
+            "x =>\nx",
+            "a\n.b",
+            "a\n\n// c\n  .b",
+            "if a { 1 }\nelse { 2 }",
+            "a\nand b",
+            "a\nor b",
+            "a\nstep 1",
+            "a\nwhen b",
+            "a\nin b",
+            "a\nwith { b }",
+            "a\n+ b",
+            "a\n- b",
+            "a\n- /* c */ b",
+            "a\n* b",
+            "a\n/ b",
+            "a\n% b",
+            "a\n& b",
+            "a\n^ b",
+            "a\n++ b",
+            "a\n== b",
+            "a\n< b",
+            "a\n.. b",
+        ] {
+            assert_eq!(statements(text), 1, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn the_innermost_bracket_decides() {
+        let ends = |text: &str| {
+            let tokens = newlines(text, &lex(SourceId(0), text).tokens);
+            tokens.kinds.iter().filter(|kind| **kind == Token::Newline).count()
+        };
+        assert_eq!(ends("f(do {\n a\n b\n})"), 1);
+        assert_eq!(ends("{ f(\na\n) }"), 0);
+        assert_eq!(ends("[{\na = 1\nb = [1,\n2]\n}\n]"), 1);
+        assert_eq!(ends("do {\n\n a\n\n /// plain here\n b\n\n}"), 1);
+    }
+}

@@ -127,9 +127,9 @@ mod tests {
         assert_eq!(run("a{{b}}c\"").length, 7);
         assert_eq!(run("a\\\"b\"").length, 4);
         assert_eq!(run("a\nb").length, 1);
-        assert_eq!(run("a}b\"").faults, [1..2]);
-        assert_eq!(run("\\q\"").faults, [0..2]);
-        assert_eq!(run("\\u{110000}\"").faults, [0..10]);
+        assert_eq!(run("a}b\"").faults[0], 1..2);
+        assert_eq!(run("\\q\"").faults[0], 0..2);
+        assert_eq!(run("\\u{110000}\"").faults[0], 0..10);
     }
 
     #[test]

@@ -253,6 +253,36 @@ impl Token {
     }
 }
 
+/// The tokens that a message can name as needed.
+const NAMED: &[Token] = &[
+    Token::Newline,
+    Token::Name,
+    Token::Number,
+    Token::StringStart,
+    Token::LParen,
+    Token::RParen,
+    Token::LBracket,
+    Token::RBracket,
+    Token::LBrace,
+    Token::RBrace,
+    Token::HoleClose,
+    Token::Comma,
+    Token::Dot,
+    Token::Colon,
+    Token::Assign,
+    Token::FatArrow,
+    Token::Arrow,
+    Token::In,
+    Token::If,
+    Token::Else,
+    Token::Fn,
+    Token::As,
+    Token::With,
+    Token::Step,
+    Token::When,
+    Token::Fails,
+];
+
 /// A set of tokens.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct TokenSet(u128);
@@ -378,9 +408,9 @@ impl TokenSet {
         TokenSet(self.0 & !other.0)
     }
 
-    /// Whether both sets share a token.
-    pub const fn meets(self, other: TokenSet) -> bool {
-        self.0 & other.0 != 0
+    /// The tokens in it that a message can name, in the order of their declaration.
+    pub fn iter(self) -> impl Iterator<Item = Token> {
+        NAMED.iter().copied().filter(move |token| self.has(*token))
     }
 }
 

@@ -4,6 +4,7 @@
 mod atom;
 mod expr;
 mod fault;
+mod habit;
 mod hint;
 mod item;
 mod operator;
@@ -31,6 +32,9 @@ type Input<'s> = &'s [Token];
 type Extra<'s> = extra::Full<Fault, State<'s>, ()>;
 type Boxed<'s, T> = chumsky::Boxed<'s, 's, Input<'s>, T, Extra<'s>>;
 
+/// Messages beyond these are left out: nobody reads them, and rubbish has a million.
+const MAX_DIAGNOSTICS: usize = 100;
+
 /// A parser of this grammar.
 trait Parse<'s, T>: Parser<'s, Input<'s>, T, Extra<'s>> + Clone + 's {}
 impl<'s, T, P: Parser<'s, Input<'s>, T, Extra<'s>> + Clone + 's> Parse<'s, T> for P {}
@@ -54,20 +58,27 @@ fn read(source: SourceId, text: &str) -> (Program, Vec<Diagnostic>, Productions)
     let lexed = lexer::lex(source, text);
     let doc = state::file_doc(text, &lexed);
     let Lexed { tokens, mut diagnostics, .. } = lexed;
-    let (tokens, unbalanced) = bracket::balance(source, text, tokens);
-    diagnostics.extend(unbalanced);
-    let (tokens, too_deep) = depth::limit(source, tokens);
-    diagnostics.extend(too_deep);
+    let balanced = bracket::balance(source, text, tokens);
+    diagnostics.extend(balanced.diagnostics);
+    let tokens = depth::limit(source, balanced.tokens, &mut diagnostics);
     let tokens = newline::newlines(text, &tokens);
     let mut state = State::new(source, text, &tokens);
     let (items, faults) =
         item::program().parse_with_state(&tokens.kinds, &mut state).into_output_errors();
     let used = state.used();
+    diagnostics.sort_by_key(start);
+    diagnostics.truncate(MAX_DIAGNOSTICS);
     let known: Vec<Span> = diagnostics.iter().filter_map(Diagnostic::span).collect();
-    diagnostics.extend(messages(source, text, &tokens, faults, &known));
-    diagnostics.sort_by_key(|d| d.span().map_or(0, |span| span.start));
+    diagnostics.extend(balanced.semicolons);
+    diagnostics.extend(messages(source, text, &tokens, &faults, &known));
+    diagnostics.sort_by_key(start);
+    diagnostics.truncate(MAX_DIAGNOSTICS);
     let span = Span::new(source, 0, text.len() as u32);
     (Program { doc, items: items.unwrap_or_default(), span }, diagnostics, used)
+}
+
+fn start(diagnostic: &Diagnostic) -> u32 {
+    diagnostic.span().map_or(0, |span| span.start)
 }
 
 /// What the parser's faults mean in words; none where an earlier pass has spoken already.
@@ -75,11 +86,12 @@ fn messages(
     source: SourceId,
     text: &str,
     tokens: &Tokens,
-    faults: Vec<Fault>,
+    faults: &[Fault],
     known: &[Span],
 ) -> Vec<Diagnostic> {
     let context = hint::Context::new(source, text, tokens);
-    let fresh = faults.iter().filter(|fault| !context.is_known(fault.at, known));
+    let fresh =
+        faults.iter().take(MAX_DIAGNOSTICS).filter(|fault| !context.is_known(fault.at, known));
     fresh.map(|fault| context.diagnostic(fault)).collect()
 }
 

@@ -27,6 +27,16 @@ fn skip_to_closer(input: &mut Reader<'_, '_>, until: TokenSet) {
     }
 }
 
+/// Braces on the line behind a broken statement belonged to it.
+fn skip_stranded_braces(input: &mut Reader<'_, '_>) {
+    let before = input.save();
+    if input.next() == Some(Token::Newline) && input.peek() == Some(Token::LBrace) {
+        skip_to_closer(input, TokenSet::of(&[Token::Newline]));
+    } else {
+        input.rewind(before);
+    }
+}
+
 /// The rest of a bracket, with its end.
 pub(super) fn rest_of_bracket<'s>() -> impl Parse<'s, ()> {
     custom::<_, Input<'s>, _, Extra<'s>>(|input| {
@@ -53,6 +63,7 @@ pub(super) fn broken_stmt<'s>() -> impl Parse<'s, Stmt> {
         let start = *input.cursor().inner();
         let cursor = input.cursor();
         skip_to_closer(input, TokenSet::of(&[Token::Newline]));
+        skip_stranded_braces(input);
         let end = *input.cursor().inner();
         let tokens = input.slice_since(&cursor..);
         Ok(named_error(input.state(), tokens, start, end))
