@@ -3,4 +3,5 @@
 mod host;
 mod library;
 mod refusals;
+mod shapes;
 mod values;
