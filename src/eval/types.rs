@@ -336,7 +336,7 @@ pub fn collect_shapes(value: &Value, shapes: &mut Vec<ShapeId>) -> bool {
 pub fn shown(value: &Value) -> String {
     match value {
         Value::Number(..) => format!("`{value}` ({})", value.words()),
-        Value::Text(text) if text.len() <= 40 => format!("the string {text:?}", text = &**text),
+        Value::Text(text) if text.len() <= 40 => format!("the string {text:?}", text = &***text),
         Value::List(_) => {
             let text = value.to_string();
             if text.len() <= 60 { format!("the list {text}") } else { "a list".into() }

@@ -8,6 +8,7 @@ use crate::{
     eval::{
         evaluator::Evaluator,
         failure::{Outcome, fail},
+        stack::deep,
         testing::Write,
         value::{Value, number_text},
     },
@@ -136,14 +137,14 @@ fn describe(evaluator: &mut Evaluator, args: &Args, value: &Value) -> Outcome<St
         Value::List(list) if !list.is_empty() => {
             let mut text = String::new();
             for item in list.iter() {
-                text.push_str(&describe(evaluator, args, item)?);
+                text.push_str(&deep(|| describe(evaluator, args, item))?);
             }
             Ok(text)
         }
         Value::Record(record) => {
             let mut text = String::new();
             for (key, value) in record.fields() {
-                let inner = describe(evaluator, args, value)?;
+                let inner = deep(|| describe(evaluator, args, value))?;
                 match inner.lines().count() {
                     0 | 1 => text.push_str(&format!("{key} = {inner}")),
                     _ => text.push_str(&format!("{key}:\n{inner}")),

@@ -126,6 +126,12 @@ impl Evaluator<'_> {
                 _ => list.push(id),
             }
         }
+        let mut seen = rustc_hash::FxHashSet::default();
+        let mut index = 0;
+        list.retain(|id| {
+            index += 1;
+            index == 1 || seen.insert(*id)
+        });
         if list.len() == known { minuend } else { self.add_node(Node::Difference(list.into()), at) }
     }
 

@@ -213,7 +213,9 @@ impl Evaluator<'_> {
             };
         }
         let id = InstanceId(self.instances.len() as u32);
-        self.room(unit.globals.len(), at)?;
+        self.cells_made += unit.globals.len() as u64;
+        self.room(0, at)?;
+        self.instance_index.entry(fingerprint(path, &given)).or_default().push(id);
         self.instances.push(Instance::new(unit, given));
         match self.admit(id) {
             Ok(()) => Ok(id),
@@ -228,12 +230,13 @@ impl Evaluator<'_> {
         let same = |a: &Given, b: &Given| {
             a.name == b.name && super::compare::equal(&a.value, &b.value) == Ok(true)
         };
-        let found = self.instances.iter().position(|instance| {
+        let candidates = self.instance_index.get(&fingerprint(path, given))?;
+        candidates.iter().copied().find(|id| {
+            let instance = &self.instances[id.0 as usize];
             *instance.unit.path == *path
                 && instance.given.len() == given.len()
                 && instance.given.iter().zip(given).all(|(a, b)| same(a, b))
-        });
-        found.map(|index| InstanceId(index as u32))
+        })
     }
 
     fn check_known(&self, unit: &Unit, given: &Given, at: Span) -> Outcome<()> {
@@ -268,9 +271,7 @@ impl Evaluator<'_> {
             let checked = self.global(id, param.global, at).map(|_| ());
             self.keep_first(&mut result, checked);
         }
-        if result.is_err() {
-            return result;
-        }
+        result.as_ref().map_err(Failure::clone)?;
         for assert in &unit.asserts {
             let checked = self.in_frame(id, unit.frame, |this, frame| this.assert(frame, assert));
             if self.dry && matches!(&checked, Err(failure) if failure.diagnostic().is_none()) {
@@ -435,6 +436,23 @@ impl CallRecord {
             None => "a lambda".into(),
         }
     }
+}
+
+/// Equal for equal parameters; numbers and strings tell most others apart.
+fn fingerprint(path: &str, given: &[Given]) -> u64 {
+    use std::hash::{Hash, Hasher};
+    let mut hasher = rustc_hash::FxHasher::default();
+    path.hash(&mut hasher);
+    for given in given {
+        given.name.hash(&mut hasher);
+        match &given.value {
+            // 0 and -0 are equal.
+            Value::Number(value, _) => (value + 0.0).to_bits().hash(&mut hasher),
+            Value::Text(text) => text.hash(&mut hasher),
+            _ => {}
+        }
+    }
+    hasher.finish()
 }
 
 fn placed(error: Diagnostic, at: Option<Span>) -> Diagnostic {

@@ -51,6 +51,21 @@ pub(super) fn name<'s>() -> impl Parse<'s, Name> {
     word(TokenSet::NAMES)
 }
 
+/// A NAME before one of the given tokens, which are not read: other names are not looked up, since
+/// most of them begin an expression.
+pub(super) fn name_before<'s>(next: TokenSet) -> impl Parse<'s, Name> {
+    custom::<_, Input<'s>, _, Extra<'s>>(move |input| {
+        let at = *input.cursor().inner();
+        let named = input.next().is_some_and(|token| TokenSet::NAMES.has(token));
+        if !named || !input.peek().is_some_and(|token| next.has(token)) {
+            return Err(Fault { at, expected: TokenSet::NAMES });
+        }
+        let state = input.state();
+        state.mark(Production::Name);
+        Ok(Name { text: state.word(at), span: state.span(at, at + 1) })
+    })
+}
+
 /// What may follow a `.`: any word.
 pub(super) fn member_name<'s>() -> impl Parse<'s, Name> {
     word(TokenSet::NAMES.or(TokenSet::RESERVED))

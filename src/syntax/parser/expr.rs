@@ -6,7 +6,7 @@ use chumsky::prelude::*;
 
 use super::{
     Boxed, Parse, Production,
-    atom::{marked, name, token},
+    atom::{marked, name, name_before, token},
     operator::or,
     primary::{postfix, primary},
     state::here,
@@ -14,7 +14,7 @@ use super::{
 };
 use crate::syntax::{
     ast::{Expr, ExprKind, Name},
-    token::Token,
+    token::{Token, TokenSet},
 };
 
 /// expr = NAME "=>" expr | "(" [ NAME { "," NAME } ] ")" "=>" expr | or
@@ -28,7 +28,8 @@ pub(super) fn expr<'s>() -> impl Parse<'s, Expr> {
 }
 
 fn lambda<'s>(expr: impl Parse<'s, Expr>) -> Boxed<'s, Expr> {
-    let single = name().map(|name| vec![name]).then_ignore(token(Token::FatArrow));
+    let single = name_before(TokenSet::of(&[Token::FatArrow]));
+    let single = single.map(|name| vec![name]).then_ignore(token(Token::FatArrow));
     let several = name().separated_by(token(Token::Comma)).allow_trailing().collect::<Vec<Name>>();
     let several = token(Token::LambdaParen)
         .ignore_then(several)

@@ -4,7 +4,7 @@ use chumsky::prelude::*;
 
 use super::{
     Boxed, Parse, Production,
-    atom::{marked, member_name, name, number, string, take, token},
+    atom::{marked, member_name, name, name_before, number, string, take, token},
     recover::rest_of_bracket,
     state::here,
 };
@@ -68,7 +68,7 @@ fn follow(object: Expr, suffix: Suffix, span: Span) -> Expr {
 
 /// arg = NAME "=" expr | ".." expr | expr
 fn arg<'s>(expr: impl Parse<'s, Expr>) -> Boxed<'s, Argument> {
-    let named = name().then_ignore(token(Token::Assign));
+    let named = name_before(TokenSet::of(&[Token::Assign])).then_ignore(token(Token::Assign));
     let named = named.then(expr.clone()).map(|(name, value)| Argument::Named { name, value });
     let spread = token(Token::DotDot).ignore_then(expr.clone()).map(Argument::Spread);
     marked(Production::Arg, choice((named, spread, expr.map(Argument::Positional))))

@@ -6,13 +6,13 @@ use chumsky::prelude::*;
 
 use super::{
     Boxed, Parse, Production,
-    atom::{marked, name, token},
+    atom::{marked, name, name_before, token},
     recover::{broken_stmt, statement_end},
     state::here,
 };
 use crate::syntax::{
     ast::{Block, Body, Expr, FnParam, Function, Stmt, StmtKind, Type},
-    token::Token,
+    token::{Token, TokenSet},
 };
 
 /// block = "{" stmt { NL stmt } "}"
@@ -42,7 +42,8 @@ pub(super) fn stmt<'s>(
 
 /// NAME [":" type] "=" expr
 pub(super) fn bind<'s>(expr: impl Parse<'s, Expr>) -> Boxed<'s, StmtKind> {
-    let head = name().then(annotation()).then_ignore(token(Token::Assign));
+    let name = name_before(TokenSet::of(&[Token::Colon, Token::Assign]));
+    let head = name.then(annotation()).then_ignore(token(Token::Assign));
     head.then(expr).map(|((name, ty), value)| StmtKind::Bind { name, ty, value }).boxed()
 }
 

@@ -2,4 +2,6 @@
 
 mod host;
 mod library;
+mod refusals;
+mod shapes;
 mod values;
