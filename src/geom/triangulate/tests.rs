@@ -186,3 +186,27 @@ fn thin_triangles_are_flipped_away() {
     };
     assert!(longest.map(length).fold(0.0, f64::max) < 2.3);
 }
+
+#[test]
+fn one_crossing_spoils_little() {
+    // A plate with many holes, one corner of which strays over its neighbour.
+    let mut points = vec![[0., 0.], [100., 0.], [100., 100.], [0., 100.]];
+    let mut loops: Vec<Vec<u32>> = vec![vec![0, 1, 2, 3]];
+    for i in 0..100 {
+        let center = DVec2::new(f64::from(i % 10) * 10.0 + 5.0, f64::from(i / 10) * 10.0 + 5.0);
+        let first = points.len() as u32;
+        points.extend((0..16).map(|k| <[f64; 2]>::from(center + unit_circle(16, 16 - k) * 4.0)));
+        loops.push((first..first + 16).collect());
+    }
+    points.swap(4 + 16 * 37, 5 + 16 * 37);
+    let loops: Vec<&[u32]> = loops.iter().map(Vec::as_slice).collect();
+    let triangles = flat(&points, &loops);
+    assert_eq!(triangles.len(), 1604 + 200 - 2);
+    assert_closed(&triangles, &loops);
+    let upright = triangles.iter().filter(|t| {
+        let [a, b, c] = t.map(|k| DVec2::from(points[k as usize]));
+        orient2d(a, b, c) > 0.0
+    });
+    let count = upright.count();
+    assert!(count > 1790, "{count}");
+}

@@ -6,8 +6,9 @@ use thiserror::Error;
 use super::{
     Polyhedron,
     band::add_point,
-    flank::{Edge, Origins, edges, lines},
+    flank::{Edge, Origins, edges, encloses, lines},
     primitive::cone_surface,
+    ridge::roof,
 };
 use crate::geom::{
     Contour, PolyMesh, Region, Surface, Tolerance,
@@ -21,8 +22,8 @@ pub const MAX_SLICES: u32 = 20_000;
 /// Why there is no extrusion.
 #[derive(Clone, Copy, PartialEq, Debug, Error)]
 pub enum ExtrudeError {
-    /// No area to draw up.
-    #[error("the profile is empty; an extrusion needs one with area")]
+    /// No area to draw up: no contour, or one with fewer than three finite corners.
+    #[error("the profile is empty or broken; an extrusion needs one with area")]
     EmptyProfile,
     /// Height not positive.
     #[error("the height is {0} mm; it must be positive")]
@@ -30,12 +31,17 @@ pub enum ExtrudeError {
     /// A scale below 0, or not finite.
     #[error("the scale is [{}, {}]; both factors must be 0 or more", .0.x, .0.y)]
     Scale(DVec2),
-    /// One factor 0, the other not.
-    #[error("the scale is [{}, {}]; the top must keep its area or shrink to a point", .0.x, .0.y)]
+    /// A twist that would end in a line.
+    #[error("the scale is [{}, {}] with a twist; a twisted top must keep its area or shrink to a point", .0.x, .0.y)]
     Ridge(DVec2),
     /// A twist that is not finite.
     #[error("the twist is {0} degrees; it must be finite")]
     Twist(f64),
+    /// A profile too fine to be drawn to a ridge.
+    #[error(
+        "the ridge cuts the profile's edges into more than two million parts; use fewer corners"
+    )]
+    TooManyParts,
     /// Finer than any use.
     #[error("the twist needs {0} slices at this tolerance; at most {MAX_SLICES} are made")]
     TooManySlices(f64),
@@ -43,7 +49,8 @@ pub enum ExtrudeError {
 
 /// Draws a region from z = 0 up to `height` mm. On the way it turns by `twist` degrees about the z axis,
 /// counter-clockwise seen from above (OpenSCAD's `twist` turns the other way), and each coordinate is
-/// scaled linearly from 1 to `scale`; a scale of 0 in both gives an apex.
+/// scaled linearly from 1 to `scale`; a scale of 0 in both gives an apex, in one a ridge
+/// (without twist only).
 ///
 /// Slices and the split of twisted facets keep within `tolerance` of the surface that the region's edges
 /// sweep. Fails for an empty region and for sizes as [`ExtrudeError`] says.
@@ -66,6 +73,9 @@ pub fn extrude(
 ) -> Result<Polyhedron, ExtrudeError> {
     let rise = Rise { height, twist, scale };
     rise.check(region)?;
+    if rise.has_ridge() {
+        return roof(region, height, scale, tolerance).ok_or(ExtrudeError::TooManyParts);
+    }
     let slices = rise.slices(region, tolerance)?;
     let mut drawing =
         Drawing { mesh: PolyMesh::default(), origins: Origins::default(), planes: vec![], rise };
@@ -91,7 +101,7 @@ struct Rise {
 impl Rise {
     fn check(&self, region: &Region) -> Result<(), ExtrudeError> {
         let Rise { height, twist, scale } = *self;
-        if region.is_empty() {
+        if !encloses(region) {
             return Err(ExtrudeError::EmptyProfile);
         }
         if !(height > 0.0 && height.is_finite()) {
@@ -100,13 +110,18 @@ impl Rise {
         if !(scale.min_element() >= 0.0 && scale.is_finite()) {
             return Err(ExtrudeError::Scale(scale));
         }
-        if scale.min_element() == 0.0 && scale != DVec2::ZERO {
+        if self.has_ridge() && twist != 0.0 {
             return Err(ExtrudeError::Ridge(scale));
         }
         if !twist.is_finite() {
             return Err(ExtrudeError::Twist(twist));
         }
         Ok(())
+    }
+
+    /// Whether the top shrinks to a line.
+    fn has_ridge(&self) -> bool {
+        self.scale.min_element() == 0.0 && self.scale != DVec2::ZERO
     }
 
     /// Whether the flank of an edge is flat.

@@ -67,6 +67,12 @@ pub(super) fn edges(contour: &Contour) -> impl Iterator<Item = Edge> + '_ {
     })
 }
 
+/// Whether every contour of a region, which has at least one, has three corners, all finite.
+pub(super) fn encloses(region: &Region) -> bool {
+    let sound = |c: &Contour| c.points.len() > 2 && c.points.iter().all(|p| p.is_finite());
+    !region.is_empty() && region.contours().all(sound)
+}
+
 /// Directions and offsets that differ by less, relative to the profile's size, may be those of one
 /// line; exact signs decide. Far above rounding, far below what tells two lines apart.
 const NEARLY_ONE_LINE: f64 = 1e-9;

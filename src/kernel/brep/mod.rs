@@ -12,5 +12,6 @@ pub mod measure;
 pub mod polyhedron;
 pub mod primitive;
 pub mod revolve;
+mod ridge;
 
 pub use polyhedron::{Defect, Polyhedron};

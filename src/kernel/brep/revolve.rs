@@ -8,7 +8,7 @@ use thiserror::Error;
 use super::{
     Polyhedron,
     band::{Ring, add_point, add_strip},
-    flank::{Edge, Origins, edges},
+    flank::{Edge, Origins, edges, encloses},
     primitive::{circle_sides, cone_surface},
 };
 use crate::geom::{
@@ -20,8 +20,8 @@ use crate::geom::{
 /// Why there is no turned solid.
 #[derive(Clone, Copy, PartialEq, Debug, Error)]
 pub enum RevolveError {
-    /// No area to turn.
-    #[error("the profile is empty; turning needs one with area")]
+    /// No area to turn: no contour, or one with fewer than three finite corners.
+    #[error("the profile is empty or broken; turning needs one with area")]
     EmptyProfile,
     /// A corner left of the axis.
     #[error("the profile reaches x = {} mm at [{}, {}]; it must stay at x >= 0", .0.x, .0.x, .0.y)]
@@ -78,7 +78,7 @@ pub fn revolve(
 }
 
 fn check(region: &Region, angle: f64, sides: Option<u32>) -> Result<(), RevolveError> {
-    if region.is_empty() {
+    if !encloses(region) {
         return Err(RevolveError::EmptyProfile);
     }
     if !(angle > 0.0 && angle <= 360.0) {

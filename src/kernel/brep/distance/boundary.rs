@@ -49,9 +49,16 @@ impl Boundary {
 
     /// The nearest triangle and its distance in mm.
     pub fn nearest(&self, p: DVec3) -> (u32, f64) {
+        self.nearest_from(p, 0)
+    }
+
+    /// The same, quicker if the triangle `guess` is near.
+    pub(super) fn nearest_from(&self, p: DVec3, guess: u32) -> (u32, f64) {
         let square = |t: u32| self.distance_squared(t, p);
-        let found = self.tree.nearest(&Bounds::of([p]), f64::INFINITY, square);
-        found.map_or((0, f64::INFINITY), |(t, square)| (t, square.sqrt()))
+        let limit = square(guess);
+        let (t, square) =
+            self.tree.nearest(&Bounds::of([p]), limit, square).unwrap_or((guess, limit));
+        (t, square.sqrt())
     }
 
     pub(super) fn distance_squared(&self, triangle: u32, p: DVec3) -> f64 {
@@ -68,7 +75,11 @@ impl Boundary {
 
     /// How deep a point is inside, in mm; negative outside.
     pub fn depth(&self, p: DVec3) -> f64 {
-        let distance = self.nearest(p).1;
+        self.signed(p, self.nearest(p).1)
+    }
+
+    /// A distance to the boundary as a depth.
+    pub(super) fn signed(&self, p: DVec3, distance: f64) -> f64 {
         if distance > 0.0 && !self.contains(p) { -distance } else { distance }
     }
 

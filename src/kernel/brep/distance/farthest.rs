@@ -14,7 +14,7 @@ use super::{ACCURACY, Boundary};
 /// Bounds are not brought nearer than this share of the size of the solids.
 const NEGLIGIBLE: f64 = 1e-9;
 /// Pieces looked at beyond the triangles given, before the search ends with the bounds it has.
-const PIECES: usize = 200_000;
+const PIECES: usize = 100_000;
 
 /// A value known by a lower and an upper bound.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -55,14 +55,15 @@ impl Ord for Piece {
     }
 }
 
-/// Bounds of the largest `value` on the boundary `of`: a function that changes no faster than distance and
-/// is nowhere larger than the distance to the boundary `to`.
-pub(super) fn farthest(of: &Boundary, to: &Boundary, value: impl Fn(DVec3) -> f64) -> Between {
+/// Bounds of the largest `value` on the boundary `of`. The value of a point is told its distance to the
+/// boundary `to`; it must change no faster than that and be no larger.
+pub(super) fn farthest(of: &Boundary, to: &Boundary, value: impl Fn(DVec3, f64) -> f64) -> Between {
     let size = of.bounds().joined(&to.bounds());
     let small = NEGLIGIBLE * (size.max - size.min).length();
     let mut search = Search { to, value, least: f64::NEG_INFINITY, small, open: BinaryHeap::new() };
+    let mut near = 0;
     for triangle in of.triangles() {
-        search.consider(triangle.to_vec());
+        near = search.consider(triangle.to_vec(), near);
     }
     for _ in 0..PIECES {
         let Some(piece) = search.open.pop() else { break };
@@ -84,29 +85,33 @@ struct Search<'a, F> {
     open: BinaryHeap<Piece>,
 }
 
-impl<F: Fn(DVec3) -> f64> Search<'_, F> {
+impl<F: Fn(DVec3, f64) -> f64> Search<'_, F> {
     fn may_hold_more(&self, bound: f64) -> bool {
         bound > self.least + self.small.max(ACCURACY * self.least)
     }
 
-    /// Takes in a piece: its corners and its middle may raise the lower bound; it is kept if it may hold
-    /// more.
-    fn consider(&mut self, corners: Vec<DVec3>) {
+    /// Takes in a piece: its middle and the corner that promises most may raise the lower bound; it is kept
+    /// if it may hold more. `near` is a triangle likely to be near; gives the nearest.
+    fn consider(&mut self, corners: Vec<DVec3>, near: u32) -> u32 {
         let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
-        let (nearest, distance) = self.to.nearest(middle);
+        let (nearest, distance) = self.to.nearest_from(middle, near);
         let radius = corners.iter().map(|c| c.distance(middle)).fold(0.0, f64::max);
-        let corner = |c: &DVec3| self.to.distance_squared(nearest, *c);
-        let convex = corners.iter().map(corner).fold(0.0, f64::max).sqrt();
+        let height = |c: &DVec3| self.to.distance_squared(nearest, *c);
+        let Some(tip) = corners.iter().max_by(|a, b| height(a).total_cmp(&height(b))) else {
+            return nearest;
+        };
+        let convex = height(tip).sqrt();
         if !self.may_hold_more(convex.min(distance + radius)) {
-            return;
+            return nearest;
         }
-        let here = (self.value)(middle);
-        let found = corners.iter().map(|c| (self.value)(*c)).fold(here, f64::max);
-        self.least = self.least.max(found);
+        let here = (self.value)(middle, distance);
+        let there = (self.value)(*tip, self.to.nearest_from(*tip, nearest).1);
+        self.least = self.least.max(here).max(there);
         let bound = convex.min(here + radius);
         if self.may_hold_more(bound) {
             self.open.push(Piece { corners, bound, nearest });
         }
+        nearest
     }
 
     fn refine(&mut self, piece: &Piece) {
@@ -127,7 +132,9 @@ impl<F: Fn(DVec3) -> f64> Search<'_, F> {
         } else {
             parts.push(rest);
         }
-        parts.into_iter().for_each(|part| self.consider(part));
+        for part in parts {
+            self.consider(part, piece.nearest);
+        }
     }
 }
 

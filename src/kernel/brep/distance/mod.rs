@@ -12,7 +12,7 @@ use super::Polyhedron;
 
 /// Relative accuracy of [`hausdorff`] and of depths: upper and lower bound differ by less, unless the search
 /// ends at its limit of pieces.
-pub const ACCURACY: f64 = 1e-4;
+pub const ACCURACY: f64 = 1e-3;
 
 /// Distance in mm from a point to the boundary of a solid, negative inside; `None` for the empty solid.
 ///
@@ -38,7 +38,7 @@ pub fn point(solid: &Polyhedron, p: DVec3) -> Option<f64> {
 /// let block = |x: f64| cuboid(dvec3(x, 0., 0.), dvec3(x + 4., 3., 2.));
 /// assert_eq!(solids(&block(0.0), &block(6.5)), Some(2.5));
 /// assert_eq!(solids(&block(0.0), &block(4.0)), Some(0.0));
-/// assert!((solids(&block(0.0), &block(3.5)).unwrap() + 0.5).abs() < 1e-4);
+/// assert!((solids(&block(0.0), &block(3.5)).unwrap() + 0.5).abs() < 1e-3);
 /// ```
 pub fn solids(a: &Polyhedron, b: &Polyhedron) -> Option<f64> {
     if a.is_empty() || b.is_empty() {
@@ -49,8 +49,9 @@ pub fn solids(a: &Polyhedron, b: &Polyhedron) -> Option<f64> {
     if apart > 0.0 && !b.contains(a.some_point()) && !a.contains(b.some_point()) {
         return Some(apart);
     }
-    let depth =
-        |of: &Boundary, within: &Boundary| farthest(of, within, |p| within.depth(p)).least.max(0.0);
+    let depth = |of: &Boundary, within: &Boundary| {
+        farthest(of, within, |p, d| within.signed(p, d)).least.max(0.0)
+    };
     Some(0.0 - depth(&a, &b).max(depth(&b, &a)))
 }
 
@@ -75,14 +76,14 @@ pub struct Hausdorff {
 /// let (a, b) = (DVec3::splat(2.0), dvec3(2.0, 2.0, 2.25));
 /// let found = hausdorff(&cuboid(DVec3::ZERO, a), &cuboid(DVec3::ZERO, b)).unwrap();
 /// assert_eq!(found.least, 0.25);
-/// assert!(found.most < 0.2501);
+/// assert!(found.most < 0.251);
 /// ```
 pub fn hausdorff(a: &Polyhedron, b: &Polyhedron) -> Option<Hausdorff> {
     if a.is_empty() || b.is_empty() {
         return None;
     }
     let (a, b) = (Boundary::new(a), Boundary::new(b));
-    let one_way = |from: &Boundary, to: &Boundary| farthest(from, to, |p| to.nearest(p).1);
+    let one_way = |from: &Boundary, to: &Boundary| farthest(from, to, |_, d| d);
     let Between { least, most } = one_way(&a, &b).max(one_way(&b, &a));
     Some(Hausdorff { least, most })
 }
@@ -143,11 +144,11 @@ mod tests {
         let ball = sphere(3.0, 32);
         assert_eq!(hausdorff(&ball, &ball).map(|h| h.least), Some(0.0));
         let shifted = hausdorff(&ball, &moved(&ball, dvec3(0.5, 0.0, 0.0))).expect("not empty");
-        assert!(shifted.least > 0.49 && shifted.most < 0.5001, "{shifted:?}");
+        assert!(shifted.least > 0.49 && shifted.most < 0.501, "{shifted:?}");
         let slab = cuboid(DVec3::ZERO, dvec3(30.0, 20.0, 1.0));
         let wall = cuboid(dvec3(0.0, 0.0, 0.0), dvec3(30.0, 20.0, 4.0));
         let found = hausdorff(&slab, &wall).expect("not empty");
-        assert!(found.least == 3.0 && found.most < 3.001, "{found:?}");
+        assert!(found.least == 3.0 && found.most < 3.004, "{found:?}");
     }
 
     #[test]
@@ -169,6 +170,6 @@ mod tests {
         assert!(found.most < 1e-8);
         let ball = sphere(3.0, 24);
         let cut = hausdorff(&ball, &sphere(3.0, 48)).expect("not empty");
-        assert!(cut.most - cut.least <= 1.01e-4 * cut.most, "{cut:?}");
+        assert!(cut.most - cut.least <= 1.01e-3 * cut.most, "{cut:?}");
     }
 }
