@@ -70,12 +70,15 @@ pub fn sign(text: &str) -> Sign {
     Sign { length, means: Token::Bad, instead: None, help: "" }
 }
 
+/// How many characters a string in foreign quotes may have to be taken as a whole.
+const FAR: usize = 200;
+
 /// A string in foreign quotes, if it ends on its line; else the quote alone.
 fn quoted_length(text: &str) -> usize {
-    let line = text.lines().next().unwrap_or("");
-    let mut characters = line.char_indices();
-    let first = characters.next().map_or(1, |(_, c)| c.len_utf8());
-    let closing = characters.find(|(_, c)| matches!(c, '\'' | '”' | '’' | '"' | '“' | '‘'));
+    let line = text.char_indices().take_while(|(_, c)| *c != '\n').take(FAR);
+    let first = text.chars().next().map_or(1, char::len_utf8);
+    let mut rest = line.skip(1);
+    let closing = rest.find(|(_, c)| matches!(c, '\'' | '”' | '’' | '"' | '“' | '‘'));
     closing.map_or(first, |(at, c)| at + c.len_utf8())
 }
 

@@ -279,6 +279,11 @@ fn set_operations_with_coplanar_faces() {
     let frame = m.add(Node::Difference([both, hole].into()));
     check("frame", &m, frame, 1140., 900. - 72. + 240.);
     let c = m.cuboid([5., 5., 0.], [15., 15., 10.]);
+    // 28 - 2.4 + 2.4 is not 28; the cut must end flush all the same.
+    let block = m.cuboid([0., 0., 0.], [10., 10., 28.]);
+    let cut = m.cuboid([2., 2., 2.4], [8., 8., 28.]);
+    let cup = m.add(Node::Difference([block, cut].into()));
+    check("cup", &m, cup, 2800. - 36. * 25.6, 200. + 1120. + 24. * 25.6);
     let common = m.add(Node::Intersection([a, c].into()));
     check("common", &m, common, 250., 2. * (25. + 50. + 50.));
     let far = m.at(b, [0., 0., 5.]);

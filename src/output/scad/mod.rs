@@ -11,6 +11,8 @@
 //! # Departures
 //! True curves get the facet count that the tolerance asks for. Where both languages approximate
 //! (offsets with round corners, twists) facets need not correspond, both are within the tolerance.
+//! OpenSCAD takes every number for exact: faces that only rounding keeps apart (0.1 + 0.2 and 0.3) are one
+//! on our lattice and two there, with a skin of no thickness between them.
 //! Of nested colours the outermost shows in OpenSCAD, the innermost here; shapes do not differ.
 
 use std::{collections::BTreeSet, fmt::Write};

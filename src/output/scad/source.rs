@@ -223,8 +223,17 @@ impl Writer<'_> {
 }
 
 fn cuboid(min: DVec3, max: DVec3) -> String {
-    let cube = format!("cube({});", points::triple(max - min));
+    let size = DVec3::from_array(std::array::from_fn(|i| extent(min[i], max[i])));
+    let cube = format!("cube({});", points::triple(size));
     if min == DVec3::ZERO { cube } else { format!("translate({}) {cube}", points::triple(min)) }
+}
+
+/// A size that leads from `min` to `max` to the bit: OpenSCAD adds the two, and faces that meet must not
+/// be a rounding apart there.
+fn extent(min: f64, max: f64) -> f64 {
+    let size = max - min;
+    let sizes = [size, size.next_down(), size.next_up()];
+    sizes.into_iter().find(|s| min + s == max).unwrap_or(size)
 }
 
 fn paint(Color { r, g, b }: Color) -> String {
