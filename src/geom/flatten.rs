@@ -9,10 +9,10 @@ use glam::DVec2;
 use super::Tolerance;
 
 /// The most chords one curve is drawn with, whatever the tolerance says.
-pub const MOST_CHORDS: u32 = 1 << 16;
+pub const MOST_CHORDS: u32 = 1 << 14;
 
 /// The number of chords a full circle of radius `radius` (mm) needs: a multiple of 4, so that the
-/// four extreme points are corners, and at least 8.
+/// four extreme points are corners, from 8 to [`MOST_CHORDS`].
 ///
 /// ```
 /// use katachi::geom::{Tolerance, flatten::circle_chords};

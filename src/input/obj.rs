@@ -10,7 +10,7 @@ use tobj::{LoadError, LoadOptions, Model};
 
 use super::{
     Place, ReadError,
-    error::{Format, MOST_COORDINATE},
+    error::{Format, MOST_COORDINATE, shortened},
     soup::Soup,
 };
 use crate::geom::PolyMesh;
@@ -22,7 +22,9 @@ const OBJ: Format = Format("OBJ");
 /// # Errors
 /// What `tobj` refuses, with the line it had come to; coordinates that are not finite; no faces.
 pub fn read(bytes: &[u8]) -> Result<PolyMesh, ReadError> {
-    let mut reader = Counted { rest: OBJ.text(bytes)?.as_bytes(), lines: 0 };
+    let text = OBJ.text(bytes)?;
+    check_indices(text)?;
+    let mut reader = Counted { rest: text.as_bytes(), lines: 0 };
     let options = LoadOptions { ignore_points: true, ignore_lines: true, ..LoadOptions::default() };
     let loaded = tobj::load_obj_buf(&mut reader, &options, |_| Err(LoadError::OpenFileFailed));
     let (models, _) = loaded.map_err(|error| {
@@ -34,6 +36,34 @@ pub fn read(bytes: &[u8]) -> Result<PolyMesh, ReadError> {
         add(&mut soup, model)?;
     }
     soup.finish()
+}
+
+/// Every face must name what exists: `tobj` computes with any number.
+fn check_indices(text: &str) -> Result<(), ReadError> {
+    const KINDS: [(&str, &str); 3] =
+        [("v", "points"), ("vt", "texture coordinates"), ("vn", "normals")];
+    let first = |line: &str| line.split_whitespace().next().map(str::to_owned).unwrap_or_default();
+    let mut counts = [0_i64; 3];
+    for word in text.lines().map(first) {
+        if let Some(kind) = KINDS.iter().position(|(name, _)| *name == word) {
+            counts[kind] += 1;
+        }
+    }
+    for (number, line) in text.lines().enumerate().filter(|(_, line)| first(line) == "f") {
+        for corner in line.split_whitespace().skip(1) {
+            for (kind, index) in corner.split('/').enumerate().filter(|(_, i)| !i.is_empty()) {
+                let (_, what) = KINDS.get(kind).unwrap_or(&KINDS[0]);
+                let count = counts.get(kind).copied().unwrap_or(0);
+                let value = index.parse::<i64>().ok();
+                if value.is_none_or(|v| v == 0 || v < -count || v > count) {
+                    let found = format!("a face with \"{}\"", shortened(corner));
+                    let needed = format!("there are {count} {what}, counted from 1");
+                    return Err(OBJ.error(Place::Line(number + 1), found, needed));
+                }
+            }
+        }
+    }
+    Ok(())
 }
 
 fn add(soup: &mut Soup, model: &Model) -> Result<(), ReadError> {

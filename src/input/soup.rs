@@ -75,13 +75,16 @@ impl Soup {
         }
     }
 
-    /// The mesh: as in the file where it is closed by index, else with equal points welded.
+    /// The mesh: as in the file where it is closed by index, else with equal points welded. Points of no
+    /// face are left out.
     pub fn finish(self) -> Result<PolyMesh, ReadError> {
-        if self.mesh.is_empty() {
+        let closed = is_closed(&self.mesh);
+        let mesh = if closed { self.mesh } else { super::weld::welded(&self.mesh) };
+        if mesh.is_empty() {
             let needed = "a mesh with at least one face is needed";
             return Err(self.format.error(super::Place::File, "no faces", needed));
         }
-        if is_closed(&self.mesh) { Ok(self.mesh) } else { Ok(super::weld::welded(&self.mesh)) }
+        Ok(super::weld::without_strays(mesh))
     }
 }
 

@@ -58,6 +58,28 @@ pub(super) fn welded(mesh: &PolyMesh) -> PolyMesh {
     renumbered(mesh, points, &places)
 }
 
+/// The mesh without the points that no face has.
+pub(super) fn without_strays(mesh: PolyMesh) -> PolyMesh {
+    let mut used = vec![false; mesh.points.len()];
+    for &corner in mesh.faces().flat_map(|f| f.loops()).flatten() {
+        used[corner as usize] = true;
+    }
+    if used.iter().all(|u| *u) {
+        return mesh;
+    }
+    let mut points = vec![];
+    let places: Vec<u32> = (mesh.points.iter().zip(&used))
+        .map(|(p, used)| {
+            let place = points.len() as u32;
+            if *used {
+                points.push(*p);
+            }
+            place
+        })
+        .collect();
+    renumbered(&mesh, points, &places)
+}
+
 fn renumbered(mesh: &PolyMesh, points: Vec<DVec3>, places: &[u32]) -> PolyMesh {
     let mut result = PolyMesh::with_points(points);
     for origin in mesh.origins() {

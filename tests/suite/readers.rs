@@ -143,6 +143,20 @@ fn units_components_and_mirrors_of_3mf() {
 }
 
 #[test]
+fn points_of_no_face_are_left_out() {
+    let stray =
+        OFF.replace("5 5 8", "6 5 8").replace("1 1 1\n", "9 9 9\n1 1 1\n").replace(" 4\n", " 5\n");
+    let stray = stray.replace("1 4 1.0", "1 5 1.0");
+    let mesh = read_mesh("a.off", stray.as_bytes()).unwrap();
+    assert_eq!(mesh, read_mesh("a.off", OFF.as_bytes()).unwrap());
+    let point = "OFF\n3 1 0\n1 1 1\n1 1 1\n1 1 1\n3 0 1 2\n";
+    assert_eq!(
+        mesh_error("a.off", point),
+        "OFF: no faces; a mesh with at least one face is needed"
+    );
+}
+
+#[test]
 fn healing_welds_near_points() {
     let cracked = OFF
         .replace("5 5 8", "6 5 8")
@@ -224,7 +238,10 @@ fn refusals_say_what_where_and_what_is_needed() {
         mesh_error("a.obj", &OBJ.replace("v 2 2 0", "v 2 x 0"))
             .starts_with("OBJ line 6: position parse error")
     );
-    assert!(mesh_error("a.obj", &OBJ.replace("f 3 4 5", "f 3 4 9")).starts_with("OBJ line 1"));
+    assert_eq!(
+        mesh_error("a.obj", &OBJ.replace("f 3 4 5", "f 3 4 9")),
+        "OBJ line 15: a face with \"9\"; there are 5 points, counted from 1"
+    );
     assert!(
         mesh_error("a.ply", &PLY.replace("vertex 5", "vertex 4000000000"))
             .contains("bytes that are left cannot hold them")
@@ -366,4 +383,22 @@ fn mutated_files_are_read_or_refused() {
             }
         }
     }
+}
+
+#[test]
+fn drawings_that_multiply_themselves_are_refused() {
+    let head = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"9\" height=\"9\">";
+    let mut uses = format!("{head}<defs><rect id=\"a0\" width=\"5\" height=\"5\"/>");
+    for level in 1..30 {
+        let one = format!("<use href=\"#a{}\"/>", level - 1);
+        uses += &format!("<g id=\"a{level}\">{}</g>", one.repeat(10));
+    }
+    uses += "</defs><use href=\"#a29\"/></svg>";
+    assert!(read_profile("a.svg", uses.as_bytes(), Tolerance::DEFAULT).is_err());
+    let deep = format!(
+        "{head}{}<rect width=\"5\" height=\"5\"/>{}</svg>",
+        "<g>".repeat(50_000),
+        "</g>".repeat(50_000)
+    );
+    assert!(read_profile("a.svg", deep.as_bytes(), Tolerance::DEFAULT).is_err());
 }

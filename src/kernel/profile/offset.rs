@@ -238,6 +238,56 @@ mod tests {
         p.distance(a + d * t)
     }
 
+    /// Random points of the plane against the definition: the distance to the figure, or to its boundary
+    /// from inside, is compared with d.
+    #[test]
+    fn points_are_where_their_distance_says() {
+        let mut seed = 3_u64;
+        let mut random = move || {
+            seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (seed >> 40) as f64 / (1 << 24) as f64
+        };
+        let tolerance = Tolerance::new(1e-3).unwrap();
+        for round in 0..60 {
+            let mut figures = vec![];
+            for _ in 0..4 {
+                let at = DVec2::new(random(), random()) * 16.0 - 8.0;
+                let map = glam::DAffine2::from_angle_translation(6.3 * random(), at);
+                let figure = match round % 2 {
+                    0 => rect(dvec2(1.0 + 9.0 * random(), 1.0 + 5.0 * random())).unwrap(),
+                    _ => circle(0.5 + 4.0 * random(), None, tolerance).unwrap(),
+                };
+                figures.push(crate::kernel::profile::placed(&figure, &map));
+            }
+            let hole = figures.pop().unwrap();
+            let figure = difference(&[union(&figures), hole]);
+            let d = 4.0 * random() - 2.0;
+            let moved = offset(&figure, d, tolerance);
+            for _ in 0..200 {
+                let p = DVec2::new(random(), random()) * 32.0 - 16.0;
+                let edges = figure.contours().flat_map(crate::kernel::profile::measure::edges);
+                let near = edges.map(|(a, b)| distance_to_segment(p, a, b));
+                let near = near.fold(f64::INFINITY, f64::min);
+                let signed = if inside(&figure, p) { -near } else { near };
+                if (signed - d).abs() > 4e-3 {
+                    assert_eq!(
+                        inside(&moved, p),
+                        signed < d,
+                        "round {round}, d {d}, {p}: {signed}"
+                    );
+                }
+            }
+        }
+    }
+
+    fn inside(region: &Region, p: DVec2) -> bool {
+        let edges = region.contours().flat_map(crate::kernel::profile::measure::edges);
+        let crossed = edges.filter(|&(a, b)| {
+            (a.y <= p.y) != (b.y <= p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)
+        });
+        crossed.count() % 2 == 1
+    }
+
     #[test]
     fn a_neck_parts() {
         let dumbbell =

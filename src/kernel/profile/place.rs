@@ -83,3 +83,46 @@ fn similarity(m: DMat2) -> Option<f64> {
         && m.x_axis.dot(m.y_axis).abs() <= SIMILARITY * square;
     near.then(|| libm::sqrt(square))
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::dvec2;
+
+    use super::*;
+    use crate::{
+        geom::Tolerance,
+        kernel::profile::{circle, difference, rect, union},
+    };
+
+    fn plate() -> Region {
+        let hole = circle(1.0, None, Tolerance::DEFAULT).unwrap();
+        difference(&[rect(dvec2(6.0, 4.0)).unwrap(), hole])
+    }
+
+    #[test]
+    fn mirroring_keeps_outlines_counter_clockwise() {
+        let region = placed(&plate(), &Affine::from_scale(dvec2(-2.0, 2.0)));
+        let piece = &region.pieces[0];
+        assert!(piece.outer.area() > 0.0 && piece.holes[0].area() < 0.0);
+        let circle = EdgeCurve::Circle { center: DVec2::ZERO, radius: 2.0 };
+        assert!(piece.holes[0].curves.iter().all(|c| *c == circle));
+        assert!((region.area() - 4.0 * plate().area()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn an_uneven_scale_makes_a_circle_a_smooth_curve() {
+        let region = placed(&plate(), &Affine::from_scale(dvec2(2.0, 1.0)));
+        let curves = &region.pieces[0].holes[0].curves;
+        assert!(curves.iter().all(|c| *c == EdgeCurve::Smooth(0)));
+        assert!(placed(&plate(), &Affine::from_scale(dvec2(0.0, 1.0))).is_empty());
+    }
+
+    #[test]
+    fn union_keeps_smooth_curves_apart() {
+        let one = placed(&plate(), &Affine::from_scale(dvec2(2.0, 1.0)));
+        let two = placed(&one, &Affine::from_translation(dvec2(30.0, 0.0)));
+        let both = union(&[one, two]);
+        let numbers: Vec<EdgeCurve> = both.pieces.iter().map(|p| p.holes[0].curves[0]).collect();
+        assert_eq!(numbers, [EdgeCurve::Smooth(0), EdgeCurve::Smooth(1)]);
+    }
+}

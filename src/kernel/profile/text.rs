@@ -100,7 +100,7 @@ pub struct Text {
 /// use katachi::kernel::profile::{TextOptions, text};
 /// let set = text("Katachi", &TextOptions::default(), None).unwrap();
 /// assert_eq!(set.region.pieces.len(), 8); // the dot of the i is a piece of its own
-/// assert!((set.width - 45.4).abs() < 0.1);
+/// assert!((set.width - 45.24).abs() < 0.01);
 /// ```
 pub fn text(text: &str, options: &TextOptions, font: Option<&[u8]>) -> Result<Text, ProfileError> {
     let size = options.size;
@@ -278,6 +278,21 @@ mod tests {
         assert_eq!(set.region.pieces[0].holes.len(), 2);
         assert!(text(" ", &TextOptions::default(), None).unwrap().region.is_empty());
         assert_eq!(text("", &TextOptions::default(), None).unwrap().width, 0.0);
+    }
+
+    #[test]
+    fn letters_grow_shrink_and_round() {
+        let set = set("Katachi & more: 0123456789 @%", Align::Left, Baseline::Baseline).region;
+        let (area, length) = (set.area(), crate::kernel::profile::measure::perimeter(&set));
+        let fine = Tolerance::new(0.001).unwrap();
+        let grown = crate::kernel::profile::offset(&set, 0.01, fine).area();
+        let shrunk = crate::kernel::profile::offset(&set, -0.01, fine).area();
+        assert!((grown - area - 0.01 * length).abs() < 0.05, "{grown} {area} {length}");
+        assert!((area - shrunk - 0.01 * length).abs() < 0.05, "{shrunk} {area} {length}");
+        let gone = crate::kernel::profile::offset(&set, -2.0, fine);
+        assert!(gone.is_empty());
+        let round = crate::kernel::profile::round(&set, 0.1, fine);
+        assert!(!round.is_empty() && (round.area() - area).abs() < 0.05 * area);
     }
 
     #[test]
