@@ -96,7 +96,6 @@ impl<'s> Model<'s> {
             measured.diagnostics.extend(self.warnings(part.shape));
         }
         measured.diagnostics.extend(self.session.realizer.take_remarks());
-        measured.diagnostics = once_each(measured.diagnostics);
         measured
     }
 
@@ -189,7 +188,7 @@ impl<'s> Model<'s> {
             diagnostics.extend(outcome.err());
         }
         diagnostics.extend(self.session.realizer.take_remarks());
-        once_each(diagnostics)
+        diagnostics
     }
 
     /// The tests in source order.
@@ -262,15 +261,4 @@ impl<'s> Model<'s> {
     fn warnings(&self, shape: ShapeId) -> Vec<Diagnostic> {
         realize::warnings(&self.session.realizer, self.evaluator.graph(), shape)
     }
-}
-
-/// Every diagnostic once, where it came first.
-fn once_each(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
-    let mut kept: Vec<Diagnostic> = vec![];
-    for diagnostic in diagnostics {
-        if !kept.contains(&diagnostic) {
-            kept.push(diagnostic);
-        }
-    }
-    kept
 }

@@ -194,7 +194,8 @@ impl Evaluator<'_> {
     }
 
     /// The instance of a file with these parameters: an equal one made before, or a new one, whose
-    /// parameters and asserts are checked.
+    /// parameters and asserts are checked. The tolerance that the first file sets is settled before
+    /// its asserts measure anything.
     pub(in crate::eval) fn instance(
         &mut self,
         path: &Arc<str>,
@@ -215,8 +216,12 @@ impl Evaluator<'_> {
         let id = InstanceId(self.instances.len() as u32);
         self.cells_made += unit.globals.len() as u64;
         self.room(0, at)?;
+        let is_entry = self.instance_index.is_empty();
         self.instance_index.entry(fingerprint(path, &given)).or_default().push(id);
         self.instances.push(Instance::new(unit, given));
+        if is_entry && let Some(mm) = self.tolerance(id) {
+            self.host.settle_tolerance(mm);
+        }
         match self.admit(id) {
             Ok(()) => Ok(id),
             Err(failure) => {
