@@ -222,23 +222,21 @@ impl Resolver<'_> {
 
     fn use_item(&mut self, used: &ast::Use, globals: &mut std::ops::Range<usize>) {
         let placeholder = self.constant(Value::NONE, used.path.span);
-        let first = self.set_global(globals, placeholder, 0);
-        let number = match self.unit.globals[first].kind {
-            GlobalKind::Module(number) | GlobalKind::Imported(number, _) => number as usize,
-            _ => 0,
-        };
         match &used.clause {
             ast::UseClause::Names(names) => {
-                for _ in names.iter().skip(1) {
+                for _ in names {
                     self.set_global(globals, placeholder, 0);
                 }
             }
-            ast::UseClause::Module { with: Some(with), .. } => {
-                let (with, frame) = self.framed(|this| this.expression(with));
-                self.unit.uses[number].with = Some(with);
-                self.unit.uses[number].frame = frame;
+            ast::UseClause::Module { with, .. } => {
+                let global = self.set_global(globals, placeholder, 0);
+                let GlobalKind::Module(number) = self.unit.globals[global].kind else { return };
+                if let Some(with) = with {
+                    let (with, frame) = self.framed(|this| this.expression(with));
+                    let used = &mut self.unit.uses[number as usize];
+                    (used.with, used.frame) = (Some(with), frame);
+                }
             }
-            ast::UseClause::Module { with: None, .. } => {}
         }
     }
 
