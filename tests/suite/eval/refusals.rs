@@ -94,7 +94,7 @@ fn unknown_names() {
     refuses("a = metaball([1])", &["unknown name `metaball`"]);
     refuses("a = builtin(\"math.sin\")", &["unknown name `builtin`"]);
     refuses("fn f(x: Lenght) = x", &["there is no type `Lenght`", "did you mean `Length`?"]);
-    refuses("set kernel = TET", &["unknown name `TET`"]);
+    refuses("set kernel = TET", &["unknown-name: there is no kernel `TET` @TET@", "`EXACT`"]);
     refuses("set kernel = NONE", &["there is no kernel `NONE`", "the kernels are `EXACT`"]);
     refuses("set tolerence = 1", &["there is no setting `tolerence`"]);
 }
