@@ -132,6 +132,7 @@ fn lines<'a>(a: &'a str, b: &'a str) -> Vec<(&'a str, &'a str)> {
 
 /// What a person can check: measures of a shape, a list or record line by line.
 fn describe(evaluator: &mut Evaluator, args: &Args, value: &Value) -> Outcome<String> {
+    evaluator.tick(1, args.call)?;
     match value {
         Value::Solid(id) | Value::Profile(id) => describe_shape(evaluator, args, *id),
         Value::List(list) if !list.is_empty() => {

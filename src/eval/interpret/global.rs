@@ -19,6 +19,10 @@ use crate::{
     syntax::ast::OutputKind,
 };
 
+/// Elements compared to find out whether two instances have equal parameters; larger values make
+/// instances of their own.
+const LONGEST_COMPARISON: u64 = 100_000;
+
 impl Evaluator<'_> {
     /// The value of a top-level name.
     pub(in crate::eval) fn global(
@@ -233,7 +237,9 @@ impl Evaluator<'_> {
 
     fn find_instance(&self, path: &str, given: &[Given]) -> Option<InstanceId> {
         let same = |a: &Given, b: &Given| {
-            a.name == b.name && super::compare::equal(&a.value, &b.value) == Ok(true)
+            let mut steps = LONGEST_COMPARISON;
+            let equal = super::compare::equal(&a.value, &b.value, &mut steps);
+            a.name == b.name && equal == Ok(true)
         };
         let candidates = self.instance_index.get(&fingerprint(path, given))?;
         candidates.iter().copied().find(|id| {
@@ -340,7 +346,11 @@ impl Evaluator<'_> {
                 fits && range.admits(*number)
             }
             (Value::List(list), value) => {
-                list.iter().any(|choice| super::compare::equal(choice, value) == Ok(true))
+                let mut found = false;
+                for choice in list.iter() {
+                    found = found || self.same(choice, value, span)?;
+                }
+                found
             }
             (other, _) => {
                 let words = format!("a parameter lies in a range or a list, got {}", shown(other));

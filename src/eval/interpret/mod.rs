@@ -266,6 +266,11 @@ impl Evaluator<'_> {
         fail(base::Code::Limit, self.shown_at(span), message)
     }
 
+    /// Steps until the limit.
+    pub(super) fn steps_left(&self) -> u64 {
+        self.limits.steps.saturating_sub(self.steps_taken)
+    }
+
     /// Makes sure that `count` more values may be kept.
     pub(super) fn room(&mut self, count: usize, span: Span) -> Outcome<()> {
         let built = self.graph.len() as u64 * VALUES_A_NODE + self.cells_made;

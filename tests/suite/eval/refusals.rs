@@ -94,7 +94,7 @@ fn unknown_names() {
     refuses("a = metaball([1])", &["unknown name `metaball`"]);
     refuses("a = builtin(\"math.sin\")", &["unknown name `builtin`"]);
     refuses("fn f(x: Lenght) = x", &["there is no type `Lenght`", "did you mean `Length`?"]);
-    refuses("set kernel = TET", &["unknown name `TET`"]);
+    refuses("set kernel = TET", &["unknown-name: there is no kernel `TET` @TET@", "`EXACT`"]);
     refuses("set kernel = NONE", &["there is no kernel `NONE`", "the kernels are `EXACT`"]);
     refuses("set tolerence = 1", &["there is no setting `tolerence`"]);
 }
@@ -241,6 +241,13 @@ fn limits_are_counted() {
         "a = zip(0..1e12, 0..1e12)",
         "a = (0..1e12) * 2",
         "a = sort(0..1e12)",
+        "d = fold(0..<60, 1, (a, i) => [a, a])\ne = fold(0..<60, 1, (a, i) => [a, a])\na = d == e",
+        "d = fold(0..<60, 1, (a, i) => [a, a])\ne = fold(0..<60, 1, (a, i) => [a, a])\na = near(d, e)",
+        "d = fold(0..<60, 1, (a, i) => [a, a])\na = -d",
+        "d = fold(0..<60, 1, (a, i) => [a, a])\na = d * 2",
+        "d = fold(0..<60, 1, (a, i) => [a, a])\na = flatten(d)",
+        "d = fold(0..<60, 1, (a, i) => [a, a])\ne = fold(0..<60, 1, (a, i) => [a, a])\na = sort([d, e])",
+        "a = fold(0..<100000, EMPTY, (s, i) => s + box(i + 1, 1, 1))",
         "a = (0..1e12) ++ [1]",
         "a = box(1, 1, 1).row(100000000000, step = 1)",
     ] {
@@ -248,6 +255,20 @@ fn limits_are_counted() {
         let count = source.contains("100000000000");
         assert!(words.contains("limit: ") || count, "{source}\n{words}");
     }
+}
+
+#[test]
+fn lists_that_hold_themselves_many_times_over() {
+    holds(
+        "d = fold(0..<60, 1, (a, i) => [a, a])\nassert len(\"{d}\") < 20000 and d == d\n\
+         s = fold(0..<60, box(1, 1, 1), (a, i) => [a, a])\npart p = s.move(x = 1) + s",
+    );
+}
+
+#[test]
+fn long_sums_of_shapes_take_little_memory() {
+    holds("part p = fold(0..<20000, EMPTY, (s, i) => s + box(i + 1, 1, 1))");
+    holds("part p = fold(0..<20000, box(1, 1, 1), (s, i) => s - box(i + 2, 1, 1))");
 }
 
 #[test]
