@@ -19,6 +19,9 @@ use crate::geom::{
 /// The most slices a twist is cut into.
 pub const MAX_SLICES: u32 = 20_000;
 
+/// The most facets that a twist is cut into, unless the profile alone has more corners.
+pub const MAX_FACETS: u32 = 4_000_000;
+
 /// Why there is no extrusion.
 #[derive(Clone, Copy, PartialEq, Debug, Error)]
 pub enum ExtrudeError {
@@ -43,8 +46,8 @@ pub enum ExtrudeError {
     )]
     TooManyParts,
     /// Finer than any use.
-    #[error("the twist needs {0} slices at this tolerance; at most {MAX_SLICES} are made")]
-    TooManySlices(f64),
+    #[error("the twist needs {0} slices at this tolerance; at most {1} are made of this profile")]
+    TooManySlices(f64, u32),
 }
 
 /// Draws a region from z = 0 up to `height` mm. On the way it turns by `twist` degrees about the z axis,
@@ -147,8 +150,10 @@ impl Rise {
         }
         let mm = tolerance.mm();
         let slices = ((skew + (skew * skew + 4.0 * mm * helix).sqrt()) / (2.0 * mm)).ceil();
-        if slices > f64::from(MAX_SLICES) {
-            return Err(ExtrudeError::TooManySlices(slices));
+        let corners = region.contours().map(|c| c.points.len()).sum::<usize>();
+        let most = MAX_SLICES.min(MAX_FACETS / corners as u32).max(1);
+        if slices > f64::from(most) {
+            return Err(ExtrudeError::TooManySlices(slices, most));
         }
         Ok((slices as u32).max(1))
     }
@@ -340,7 +345,7 @@ mod tests {
         assert_eq!(try_it(0.0, 0.0, DVec2::ONE), Some(ExtrudeError::Height(0.0)));
         assert!(matches!(try_it(1.0, f64::NAN, DVec2::ONE), Some(ExtrudeError::Twist(_))));
         assert!(matches!(try_it(1.0, 0.0, dvec2(-1.0, 1.0)), Some(ExtrudeError::Scale(_))));
-        assert!(matches!(try_it(1.0, 1e9, DVec2::ONE), Some(ExtrudeError::TooManySlices(_))));
+        assert!(matches!(try_it(1.0, 1e9, DVec2::ONE), Some(ExtrudeError::TooManySlices(..))));
         let none = extrude(&Region::default(), 1.0, 0.0, DVec2::ONE, Tolerance::DEFAULT);
         assert_eq!(none, Err(ExtrudeError::EmptyProfile));
     }

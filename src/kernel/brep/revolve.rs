@@ -17,6 +17,11 @@ use crate::geom::{
     trig::{cos_deg, sin_deg, unit_circle},
 };
 
+/// The most facets that turning may make.
+pub const MAX_FACETS: usize = 8_000_000;
+/// The most sides of a full turn, whatever the profile.
+const MAX_SIDES: u32 = 1_000_000;
+
 /// Why there is no turned solid.
 #[derive(Clone, Copy, PartialEq, Debug, Error)]
 pub enum RevolveError {
@@ -32,6 +37,9 @@ pub enum RevolveError {
     /// Fewer than 3 sides.
     #[error("{0} sides; a full turn needs at least 3")]
     Sides(u32),
+    /// Finer than any use.
+    #[error("turning makes {0} facets; at most {MAX_FACETS} are made")]
+    TooManyFacets(usize),
 }
 
 /// Turns a region about the z axis by `angle` degrees counter-clockwise from +x: its y becomes z, its x
@@ -58,11 +66,17 @@ pub fn revolve(
     tolerance: Tolerance,
 ) -> Result<Polyhedron, RevolveError> {
     check(region, angle, sides)?;
+    let directions = directions(region, angle, sides, tolerance);
+    let corners = region.contours().map(|c| c.points.len()).sum::<usize>();
+    let facets = corners.saturating_mul(directions.len());
+    if facets > MAX_FACETS {
+        return Err(RevolveError::TooManyFacets(facets));
+    }
     let mut lathe = Lathe {
         mesh: PolyMesh::default(),
         origins: Origins::default(),
         levels: BTreeMap::new(),
-        directions: directions(region, angle, sides, tolerance),
+        directions,
         closed: angle == 360.0,
     };
     let ends = (!lathe.closed).then(|| [lathe.mesh.add_plane(), lathe.mesh.add_plane()]);
@@ -86,6 +100,9 @@ fn check(region: &Region, angle: f64, sides: Option<u32>) -> Result<(), RevolveE
     }
     if let Some(few) = sides.filter(|&n| n < 3) {
         return Err(RevolveError::Sides(few));
+    }
+    if let Some(many) = sides.filter(|&n| n > MAX_SIDES) {
+        return Err(RevolveError::TooManyFacets(many as usize));
     }
     let beyond = region.contours().flat_map(|c| &c.points).filter(|p| p.x < 0.0);
     let farthest = beyond.min_by(|a, b| a.x.total_cmp(&b.x));

@@ -1,7 +1,9 @@
 //! The primitive solids, facet for facet what OpenSCAD's `$fn = n` makes.
 //!
 //! Lengths in millimetres. Sizes are the caller's promise: what is not positive and finite gives the
-//! empty solid, fewer than three sides count as three.
+//! empty solid, fewer than three sides count as three. The number of sides is not bounded here, and facets
+//! grow with it (a sphere's and a torus's with its square): [`MAX_CIRCLE_SIDES`] and [`MAX_SPHERE_SIDES`] are
+//! sensible limits.
 
 mod sides;
 
