@@ -172,6 +172,20 @@ impl PolyMesh {
         }
     }
 
+    /// Leaves out the points that no face uses; the others keep their order.
+    pub fn drop_unused_points(&mut self) {
+        let mut number = vec![u32::MAX; self.points.len()];
+        self.corners.iter().for_each(|&c| number[c as usize] = 0);
+        let mut kept = 0;
+        for (i, n) in number.iter_mut().enumerate().filter(|(_, n)| **n == 0) {
+            self.points[kept as usize] = self.points[i];
+            *n = kept;
+            kept += 1;
+        }
+        self.points.truncate(kept as usize);
+        self.corners.iter_mut().for_each(|c| *c = number[*c as usize]);
+    }
+
     /// Adds the points, faces, planes and origins of another mesh behind its own; nothing is merged.
     pub fn append(&mut self, other: &PolyMesh) {
         let (points, corners) = (self.points.len() as u32, self.corners.len() as u32);

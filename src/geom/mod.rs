@@ -1,13 +1,23 @@
 //! What all kernels share: numbers, placements, surfaces and meshes. It knows no language and no kernel.
 
+pub mod bounds;
+pub mod bvh;
 pub mod mesh;
+pub mod nearest;
+pub mod orient;
+pub mod parity;
 pub mod placement;
 pub mod predicates;
 pub mod region;
+pub mod spherical_projection;
+pub mod sum;
 pub mod surface;
 pub mod tolerance;
+pub mod triangulate;
+pub mod trig;
 pub mod wide;
 
+pub use bounds::Bounds;
 pub use mesh::{FaceRef, Origin, PolyMesh};
 pub use placement::Placement;
 pub use region::{Contour, Region};

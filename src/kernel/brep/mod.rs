@@ -1,6 +1,17 @@
 //! Exact polyhedra: boundary representation by planar polygons.
 
+mod band;
 pub mod boolean;
+mod closing;
+pub mod distance;
+pub mod extrude;
+pub mod faces;
+mod flank;
+pub mod hull;
+pub mod measure;
 pub mod polyhedron;
+pub mod primitive;
+pub mod revolve;
+mod ridge;
 
 pub use polyhedron::{Defect, Polyhedron};

@@ -1,7 +1,6 @@
 //! The solid of this kernel: a closed, oriented polygon mesh.
 
 use glam::DVec3;
-use rustc_hash::FxHashMap;
 use thiserror::Error;
 
 use crate::geom::{Placement, PolyMesh};
@@ -39,6 +38,12 @@ pub enum Defect {
         point: u32,
         /// Fans found there.
         fans: usize,
+    },
+    /// A surface with one side only, as a Moebius band has.
+    #[error("the faces at ({}, {}, {}) cannot all face outwards; a solid's boundary has two sides", .at.x, .at.y, .at.z)]
+    OneSided {
+        /// The middle of an edge where it shows, mm.
+        at: DVec3,
     },
     /// A coordinate that is NaN or infinite.
     #[error("point {point} has a coordinate that is not finite")]
@@ -90,64 +95,157 @@ impl Polyhedron {
     }
 }
 
-/// The edges of a loop, each from corner to next corner.
-fn edges(corners: &[u32]) -> impl Iterator<Item = (u32, u32)> + '_ {
-    let next = corners.iter().cycle().skip(1);
-    corners.iter().copied().zip(next.copied())
+/// An edge that leaves a point, and the corner that comes after its end in the loop.
+#[derive(Clone, Copy)]
+struct Spoke {
+    end: u32,
+    follower: u32,
+}
+
+/// All directed edges, sorted by start and end.
+struct Spokes {
+    /// Where the edges of each point begin; one more at the end.
+    starts: Vec<u32>,
+    spokes: Vec<Spoke>,
+}
+
+/// The edges of a loop: start, end, and the corner after the end.
+fn edges(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
+    let n = corners.len();
+    (0..n).map(move |i| [corners[i], corners[(i + 1) % n], corners[(i + 2) % n]])
+}
+
+impl Spokes {
+    fn new(mesh: &PolyMesh) -> Spokes {
+        let all = || mesh.faces().flat_map(|f| f.loops()).flat_map(edges);
+        let mut starts = vec![0u32; mesh.points.len() + 2];
+        all().for_each(|[a, ..]| starts[a as usize + 2] += 1);
+        (1..starts.len()).for_each(|i| starts[i] += starts[i - 1]);
+        let total = starts[starts.len() - 1] as usize;
+        let mut spokes = vec![Spoke { end: 0, follower: 0 }; total];
+        for [a, end, follower] in all() {
+            let place = &mut starts[a as usize + 1];
+            spokes[*place as usize] = Spoke { end, follower };
+            *place += 1;
+        }
+        for pair in starts.windows(2) {
+            spokes[pair[0] as usize..pair[1] as usize].sort_unstable_by_key(|s| s.end);
+        }
+        Spokes { starts, spokes }
+    }
+
+    fn of(&self, point: u32) -> &[Spoke] {
+        &self.spokes[self.starts[point as usize] as usize..self.starts[point as usize + 1] as usize]
+    }
+
+    /// How many loops run from `a` to `b`.
+    fn count(&self, a: u32, b: u32) -> usize {
+        let spokes = self.of(a);
+        let first = spokes.partition_point(|s| s.end < b);
+        spokes[first..].iter().take_while(|s| s.end == b).count()
+    }
+
+    /// The corner after `b` in the only loop that runs from `a` to `b`.
+    fn follower(&self, a: u32, b: u32) -> u32 {
+        let spokes = self.of(a);
+        spokes[spokes.partition_point(|s| s.end < b)].follower
+    }
 }
 
 fn check(mesh: &PolyMesh) -> Result<(), Defect> {
     if let Some(point) = mesh.points.iter().position(|p| !p.is_finite()) {
         return Err(Defect::NotFinite { point: point as u32 });
     }
-    // For each directed edge: how many loops run along it, and the corner that follows its end.
-    let mut seen: FxHashMap<(u32, u32), (u32, u32)> = FxHashMap::default();
-    for corners in mesh.faces().flat_map(|f| f.loops()) {
-        for (i, edge) in edges(corners).enumerate() {
-            let follower = corners[(i + 2) % corners.len()];
-            seen.entry(edge).or_insert((0, follower)).0 += 1;
-        }
-    }
-    check_edges(mesh, &seen)?;
-    check_fans(mesh, &seen)
+    let spokes = Spokes::new(mesh);
+    check_edges(mesh, &spokes)?;
+    (0..mesh.points.len() as u32).try_for_each(|point| check_fan(&spokes, point))
 }
 
-fn check_edges(mesh: &PolyMesh, seen: &FxHashMap<(u32, u32), (u32, u32)>) -> Result<(), Defect> {
-    let count = |edge| seen.get(&edge).map_or(0, |entry: &(u32, u32)| entry.0);
-    let bad = |&(a, b): &(u32, u32)| count((a, b)) != 1 || count((b, a)) != 1;
-    let mut first = None;
-    let mut open = 0;
-    for (a, b) in mesh.faces().flat_map(|f| f.loops()).flat_map(edges).filter(bad) {
-        first.get_or_insert((a, b));
-        open += 1;
-    }
-    let Some((a, b)) = first else { return Ok(()) };
+fn check_edges(mesh: &PolyMesh, spokes: &Spokes) -> Result<(), Defect> {
+    let bad = |a, b| a == b || spokes.count(a, b) != 1 || spokes.count(b, a) != 1;
+    let all = mesh.faces().flat_map(|f| f.loops()).flat_map(edges);
+    let mut open = all.filter(|&[a, b, _]| bad(a, b));
+    let Some([a, b, _]) = open.next() else { return Ok(()) };
     let at = (mesh.points[a as usize] + mesh.points[b as usize]) / 2.0;
-    Err(Defect::OpenEdge { a, b, faces: (count((a, b)) + count((b, a))) as usize, at, edges: open })
+    let faces = spokes.count(a, b) + spokes.count(b, a);
+    Err(Defect::OpenEdge { a, b, faces, at, edges: open.count() + 1 })
 }
 
-/// Walks once around every point: the walk must meet all edges that leave it.
-fn check_fans(mesh: &PolyMesh, seen: &FxHashMap<(u32, u32), (u32, u32)>) -> Result<(), Defect> {
-    let mut leaving = vec![0usize; mesh.points.len()];
-    let mut start = vec![None; mesh.points.len()];
-    for (a, b) in mesh.faces().flat_map(|f| f.loops()).flat_map(edges) {
-        leaving[a as usize] += 1;
-        start[a as usize].get_or_insert(b);
+/// Walks around a point from face to face: the walk must meet all edges that leave it.
+fn check_fan(spokes: &Spokes, point: u32) -> Result<(), Defect> {
+    let leaving = spokes.of(point);
+    let Some(first) = leaving.first() else { return Ok(()) };
+    let walk = std::iter::successors(Some(first.end), |&end| {
+        Some(spokes.follower(end, point)).filter(|&next| next != first.end)
+    });
+    let met = walk.take(leaving.len()).count();
+    if met == leaving.len() { Ok(()) } else { Err(Defect::PinchedPoint { point, fans: 2 }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::dvec3;
+
+    use super::*;
+    use crate::{
+        geom::{Origin, Surface},
+        kernel::brep::primitive::cuboid,
+    };
+
+    fn cube() -> PolyMesh {
+        cuboid(DVec3::ZERO, DVec3::ONE).into_mesh()
     }
-    for (point, first) in start.iter().enumerate() {
-        let Some(first) = *first else { continue };
-        let point = point as u32;
-        let (mut spoke, mut met) = (first, 0);
-        loop {
-            met += 1;
-            spoke = seen[&(spoke, point)].1;
-            if spoke == first || met > leaving[point as usize] {
-                break;
+
+    /// A mesh of single faces without holes.
+    fn mesh(points: Vec<DVec3>, faces: &[&[u32]]) -> PolyMesh {
+        let mut mesh = PolyMesh::with_points(points);
+        let (plane, origin) = (mesh.add_plane(), mesh.add_origin(Origin::of(Surface::Plane)));
+        faces.iter().for_each(|f| mesh.push_face(&[f], plane, origin));
+        mesh
+    }
+
+    #[test]
+    fn open_edges_are_counted() {
+        let cube = cube();
+        let faces: Vec<&[u32]> = cube.faces().skip(1).map(|f| f.outer()).collect();
+        let open = Polyhedron::new(mesh(cube.points.clone(), &faces));
+        assert!(matches!(open, Err(Defect::OpenEdge { faces: 1, edges: 4, .. })), "{open:?}");
+        let mut turned = faces.clone();
+        turned.push(&[0, 1, 3, 2]);
+        let turned = Polyhedron::new(mesh(cube.points.clone(), &turned));
+        assert!(matches!(turned, Err(Defect::OpenEdge { faces: 2, .. })));
+    }
+
+    #[test]
+    fn points_and_edges_that_two_cubes_share_are_refused() {
+        for (shift, by_edge) in [(dvec3(1., 1., 1.), false), (dvec3(1., 1., 0.), true)] {
+            let mut two = cube();
+            let mut other = cube();
+            other.points.iter_mut().for_each(|p| *p += shift);
+            two.append(&other);
+            let number: Vec<u32> = (0..two.points.len())
+                .map(|i| {
+                    two.points.iter().position(|p| *p == two.points[i]).expect("itself") as u32
+                })
+                .collect();
+            let welded: Vec<Vec<u32>> = two
+                .faces()
+                .map(|f| f.outer().iter().map(|&c| number[c as usize]).collect())
+                .collect();
+            let faces: Vec<&[u32]> = welded.iter().map(Vec::as_slice).collect();
+            let found = Polyhedron::new(mesh(two.points.clone(), &faces));
+            match found {
+                Err(Defect::OpenEdge { faces, .. }) => assert!(by_edge && faces == 4),
+                Err(Defect::PinchedPoint { fans, .. }) => assert!(!by_edge && fans == 2),
+                other => panic!("{other:?}"),
             }
         }
-        if met != leaving[point as usize] {
-            return Err(Defect::PinchedPoint { point, fans: 2 });
-        }
     }
-    Ok(())
+
+    #[test]
+    fn coordinates_must_be_finite() {
+        let mut bad = cube();
+        bad.points[3].y = f64::NAN;
+        assert_eq!(Polyhedron::new(bad), Err(Defect::NotFinite { point: 3 }));
+    }
 }
