@@ -26,7 +26,7 @@ use crate::{
 impl Coded for ExtrudeError {
     fn code(&self) -> Code {
         match self {
-            ExtrudeError::TooManySlices(_) => Code::Limit,
+            ExtrudeError::TooManySlices(..) => Code::Limit,
             _ => Code::Degenerate,
         }
     }

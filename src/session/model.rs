@@ -24,6 +24,9 @@ pub struct Model<'s> {
     instance: Option<InstanceId>,
 }
 
+/// Takes the bytes of a file; the error says in words why it could not be written.
+type Sink<'a> = &'a mut dyn FnMut(&Artifact, &[u8]) -> Result<(), String>;
+
 /// What `measure` found.
 #[derive(Debug, Default)]
 pub struct Measured {
@@ -168,11 +171,7 @@ impl<'s> Model<'s> {
 
     /// Makes the files one after the other and hands their bytes to `write`, whose words say why a
     /// file could not be written. One failing file does not stop the others.
-    pub fn build(
-        &self,
-        artifacts: &[Artifact],
-        write: &mut dyn FnMut(&Artifact, &[u8]) -> Result<(), String>,
-    ) -> Vec<Diagnostic> {
+    pub fn build(&self, artifacts: &[Artifact], write: Sink) -> Vec<Diagnostic> {
         let all: Vec<Part> = artifacts.iter().flat_map(|a| a.parts.clone()).collect();
         self.realize(&all);
         let mut diagnostics = vec![];
