@@ -1,8 +1,11 @@
 //! The evaluator: what it holds, and how files come in.
 
-use std::sync::Arc;
+use std::{
+    hash::{Hash, Hasher},
+    sync::Arc,
+};
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet, FxHasher};
 
 use super::{
     failure::{Failure, Outcome, fail},
@@ -81,6 +84,23 @@ pub struct CallRecord {
     pub span: Span,
 }
 
+/// Messages, each said once.
+#[derive(Debug, Default)]
+pub struct Messages {
+    pub list: Vec<Diagnostic>,
+    said: FxHashSet<u64>,
+}
+
+impl Messages {
+    fn add(&mut self, diagnostic: Diagnostic) {
+        let mut hasher = FxHasher::default();
+        (diagnostic.code, &diagnostic.message, diagnostic.span()).hash(&mut hasher);
+        if self.said.insert(hasher.finish()) {
+            self.list.push(diagnostic);
+        }
+    }
+}
+
 /// Evaluates files. It owns the shape graph, the instances and the diagnostics.
 pub struct Evaluator<'h> {
     pub(super) host: &'h dyn Host,
@@ -90,6 +110,8 @@ pub struct Evaluator<'h> {
     /// Files being loaded, for the cycle of `use`.
     loading: Vec<(Arc<str>, Option<Span>)>,
     pub(super) instances: Vec<Instance>,
+    /// Instances by file and parameters.
+    pub(super) instance_index: FxHashMap<u64, Vec<InstanceId>>,
     /// Values of library names by number.
     pub(super) library: Vec<Option<Value>>,
     library_units: FxHashMap<u32, Arc<Unit>>,
@@ -98,9 +120,11 @@ pub struct Evaluator<'h> {
     /// Top-level names being evaluated.
     pub(super) forcing: Vec<(InstanceId, u32, Span)>,
     pub(super) steps_taken: u64,
+    /// Top-level names of all instances.
+    pub(super) cells_made: u64,
     /// The modeller's call that led into the library.
     pub(super) library_call: Span,
-    diagnostics: Vec<Diagnostic>,
+    pub(super) messages: Messages,
     pub(super) test: Option<Running>,
     /// Set while `check` runs: geometry is not asked.
     pub(super) dry: bool,
@@ -116,14 +140,16 @@ impl<'h> Evaluator<'h> {
             units: FxHashMap::default(),
             loading: vec![],
             instances: vec![],
+            instance_index: FxHashMap::default(),
             library: vec![],
             library_units: FxHashMap::default(),
             stack: vec![],
             calls: vec![],
             forcing: vec![],
             steps_taken: 0,
+            cells_made: 0,
             library_call: Span::default(),
-            diagnostics: vec![],
+            messages: Messages::default(),
             test: None,
             dry: false,
         }
@@ -133,6 +159,7 @@ impl<'h> Evaluator<'h> {
     /// `None` when the file cannot be loaded. A refused instance (an assert that fails, a parameter
     /// outside its domain) still tells its params and outputs, but evaluates none.
     pub fn open(&mut self, path: &str, overrides: &[(String, Override)]) -> Option<InstanceId> {
+        self.steps_taken = 0;
         let path: Arc<str> = path.into();
         if let Err(failure) = self.unit(&path, None) {
             self.report(&failure);
@@ -187,7 +214,9 @@ impl<'h> Evaluator<'h> {
                 let path: Arc<str> = "<parameter>".into();
                 let (unit, diagnostics) = resolve(&program, &path, text, Index::get());
                 if let Some(first) = diagnostics.into_iter().next() {
-                    return Err(first.into());
+                    let quotes = format!("a string is written in quotes: `{name}=\"{text}\"`");
+                    let word = text.chars().all(char::is_alphanumeric);
+                    return Err(if word { first.note(quotes) } else { first }.into());
                 }
                 let [global] = &unit.globals[..] else {
                     let words = format!("the value of `{name}` must be one expression");
@@ -208,23 +237,17 @@ impl<'h> Evaluator<'h> {
 
     /// The messages since the last call, each said once.
     pub fn take_diagnostics(&mut self) -> Vec<Diagnostic> {
-        std::mem::take(&mut self.diagnostics)
+        std::mem::take(&mut self.messages.list)
     }
 
-    /// How many steps were counted so far.
+    /// How many steps the last request took.
     pub fn steps(&self) -> u64 {
         self.steps_taken
     }
 
     /// Adds a message unless it has been said.
     pub(super) fn record(&mut self, diagnostic: Diagnostic) {
-        if !self.diagnostics.contains(&diagnostic) {
-            self.diagnostics.push(diagnostic);
-        }
-    }
-
-    pub(super) fn diagnostics_mut(&mut self) -> &mut Vec<Diagnostic> {
-        &mut self.diagnostics
+        self.messages.add(diagnostic);
     }
 
     /// A file after the resolve pass, loaded when first asked for.

@@ -15,7 +15,9 @@ pub fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Vec
         .collect();
     found.sort();
     found.dedup();
-    found.into_iter().take(3).map(|(_, candidate)| candidate).collect()
+    let best = found.first().map_or(0, |(distance, _)| *distance);
+    let close = found.into_iter().take_while(|(distance, _)| *distance <= best + 1);
+    close.take(3).map(|(_, candidate)| candidate).collect()
 }
 
 /// `did you mean ...?` when something is near.
@@ -30,10 +32,14 @@ pub fn did_you_mean<'a>(
 }
 
 fn closeness(name: &str, candidate: &str) -> Option<usize> {
+    let longest = name.len().max(candidate.len());
+    if longest > 64 {
+        return None;
+    }
     let (a, b) = (name.to_lowercase(), candidate.to_lowercase());
     let longer = a.chars().count().max(b.chars().count());
     let distance = edit_distance(&a, &b);
-    if distance <= longer.div_ceil(3).min(3) && distance < longer {
+    if distance <= (longer / 3).clamp(1, 3) && distance < longer {
         return Some(distance);
     }
     let begins = a.starts_with(&b) || (b.starts_with(&a) && a.len() > 1);
@@ -44,7 +50,7 @@ fn closeness(name: &str, candidate: &str) -> Option<usize> {
 /// (Damerau's optimal string alignment). Words above 64 letters are taken as far apart.
 fn edit_distance(a: &str, b: &str) -> usize {
     let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
-    if a.len().abs_diff(b.len()) > 3 || a.len() > 64 {
+    if a.len().abs_diff(b.len()) > 3 {
         return usize::MAX / 2;
     }
     let mut rows = vec![vec![0; b.len() + 1]; a.len() + 1];

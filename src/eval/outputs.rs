@@ -181,6 +181,7 @@ impl Evaluator<'_> {
     /// Evaluates one output; what goes wrong is recorded and does not touch other outputs.
     #[expect(clippy::result_unit_err, reason = "the reason is among the diagnostics")]
     pub fn shape_of(&mut self, instance: InstanceId, output: &str) -> Result<ShapeId, ()> {
+        self.steps_taken = 0;
         let result = self.output_shape(instance, output);
         result.map_err(|failure| self.report(&failure))
     }
@@ -277,6 +278,7 @@ impl Evaluator<'_> {
         instance: InstanceId,
         index: usize,
     ) -> Result<Vec<(String, ShapeId)>, ()> {
+        self.steps_taken = 0;
         let result = self.export_parts(instance, index);
         result.map_err(|failure| self.report(&failure))
     }

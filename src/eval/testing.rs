@@ -75,7 +75,8 @@ impl Evaluator<'_> {
     /// Runs one test. With `update`, references that differ are given back to be written in place of
     /// failing the test.
     pub fn run_test(&mut self, instance: InstanceId, index: usize, update: bool) -> TestOutcome {
-        let before = self.take_diagnostics();
+        self.steps_taken = 0;
+        let before = std::mem::take(&mut self.messages);
         let unit = self.instances[instance.0 as usize].unit.clone();
         let result = match unit.tests.get(index) {
             Some(test) => self.test_result(instance, test, update),
@@ -85,7 +86,7 @@ impl Evaluator<'_> {
         if let Err(failure) = &result {
             self.report(failure);
         }
-        let diagnostics = std::mem::replace(self.diagnostics_mut(), before);
+        let diagnostics = std::mem::replace(&mut self.messages, before).list;
         TestOutcome { passed: result.is_ok(), diagnostics, writes }
     }
 

@@ -1,6 +1,8 @@
 //! Declared types: what they are called, which values fit, and how a bare number becomes a length.
 
-use std::fmt;
+use std::{fmt, sync::Arc};
+
+use rustc_hash::FxHashSet;
 
 use super::{
     dimension::Dimension,
@@ -314,18 +316,20 @@ fn is_empty(graph: &ShapeGraph, id: ShapeId) -> bool {
 }
 
 /// Gathers the shapes of a value, lists opened at every level; false when something else is among
-/// them.
+/// them. A list that is met again is not opened again: to a set operation it adds nothing.
 pub fn collect_shapes(value: &Value, shapes: &mut Vec<ShapeId>) -> bool {
+    let mut opened = FxHashSet::default();
     let mut pending = vec![(value.clone(), 0)];
     while let Some((value, index)) = pending.pop() {
         match &value {
             Value::Solid(id) | Value::Profile(id) => shapes.push(*id),
-            Value::List(list) => {
+            Value::List(list) if index > 0 || opened.insert(Arc::as_ptr(list)) => {
                 if let Some(item) = list.get(index).cloned() {
                     pending.push((value, index + 1));
                     pending.push((item, 0));
                 }
             }
+            Value::List(_) => {}
             _ => return false,
         }
     }
@@ -336,7 +340,7 @@ pub fn collect_shapes(value: &Value, shapes: &mut Vec<ShapeId>) -> bool {
 pub fn shown(value: &Value) -> String {
     match value {
         Value::Number(..) => format!("`{value}` ({})", value.words()),
-        Value::Text(text) if text.len() <= 40 => format!("the string {text:?}", text = &**text),
+        Value::Text(text) if text.len() <= 40 => format!("the string {text:?}", text = &***text),
         Value::List(_) => {
             let text = value.to_string();
             if text.len() <= 60 { format!("the list {text}") } else { "a list".into() }

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::{Realizer, failure::failure, figure, import, measure};
 use crate::{
     base::{Code, Diagnostic, FileError},
-    geom::spherical_projection,
+    geom::{Tolerance, spherical_projection},
     input,
     kernel::brep::distance,
     shape::{
@@ -18,6 +18,12 @@ use crate::{
 };
 
 impl Geometry for Realizer<'_> {
+    fn settle_tolerance(&self, mm: f64) {
+        if let Some(tolerance) = Tolerance::new(mm) {
+            self.tolerance.get_or_init(|| tolerance);
+        }
+    }
+
     fn measures(&self, graph: &ShapeGraph, shape: ShapeId) -> Result<Arc<Measures>, GeometryError> {
         if let Some(measures) = self.measures.get(&shape) {
             return Ok(measures);

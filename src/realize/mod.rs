@@ -79,11 +79,6 @@ impl<'w> Realizer<'w> {
         *self.tolerance.get_or_init(Tolerance::default)
     }
 
-    /// Sets the tolerance unless one holds already.
-    pub fn settle_tolerance(&self, tolerance: Tolerance) {
-        self.tolerance.get_or_init(|| tolerance);
-    }
-
     /// Makes everything that `roots` need, independent units at the same time. Failures are kept and
     /// come out when a shape is asked for.
     pub fn realize(&self, graph: &ShapeGraph, roots: &[ShapeId]) {

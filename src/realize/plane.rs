@@ -23,7 +23,7 @@ const COPLANAR: f64 = 1e-9;
 pub fn split(map: &Placement) -> Option<(DAffine2, Placement)> {
     let m = map.linear();
     let normal = m.x_axis.cross(m.y_axis);
-    if !(normal.length() > 0.0) || !normal.is_finite() || m.determinant() == 0.0 {
+    if normal == DVec3::ZERO || !normal.is_finite() || m.determinant() == 0.0 {
         return None;
     }
     if m.x_axis.z == 0.0 && m.y_axis.z == 0.0 && m.z_axis.z > 0.0 {

@@ -3,8 +3,9 @@
 //!
 //! A *core* is a node under its placements, tags and colours. The unit of work is a core. Operands of
 //! a set operation that are set operations themselves are taken into one expression, so that a whole
-//! subtree is evaluated at once; only where that expression would grow too large or too deep are its
-//! inner operations made first, each once.
+//! subtree is evaluated at once. An inner operation is made first, once, where an operation takes many
+//! copies of it, and where the expression would grow too large or too deep. What is made first depends
+//! on the operation alone, not on who else asks for its parts.
 
 use rustc_hash::FxHashSet;
 
@@ -12,7 +13,11 @@ use crate::shape::{Kind, Node, ShapeGraph, ShapeId};
 
 /// Leaves of one set expression. A graph shares nodes, an expression does not: `a + a.move(..)`
 /// repeated twenty times has a million leaves. Above this bound inner operations are made first.
-const LARGEST_EXPRESSION: u32 = 1 << 14;
+const LARGEST_EXPRESSION: u32 = 1 << 12;
+
+/// So many copies of one inner operation are worth making it first. Two are not: a half and its mirror
+/// image are better cut in one go.
+const MANY_COPIES: usize = 3;
 
 /// Set operations inside one another in one expression; bounds the recursion over it.
 const DEEPEST_EXPRESSION: u32 = 500;
@@ -34,6 +39,8 @@ struct Facts {
 #[derive(Debug, Default)]
 pub struct Structure {
     facts: Vec<Facts>,
+    /// Operations and those of their operands that they take many copies of.
+    copied: FxHashSet<(ShapeId, ShapeId)>,
 }
 
 /// The operands of a set operation on solids; `None` for other nodes.
@@ -63,7 +70,7 @@ impl Structure {
         }
     }
 
-    fn facts_of(&self, graph: &ShapeGraph, id: ShapeId) -> Facts {
+    fn facts_of(&mut self, graph: &ShapeGraph, id: ShapeId) -> Facts {
         let node = graph.node(id);
         if let (Some(child), Kind::Solid) = (wrapped(node), graph.kind(id)) {
             return self.of(child);
@@ -71,12 +78,26 @@ impl Structure {
         let Some(list) = operands(node) else {
             return Facts { core: id, leaves: 1, depth: 0, inline: false };
         };
-        let leaves = list.iter().fold(0u32, |sum, &c| sum.saturating_add(self.of(c).leaves));
-        let depth = 1 + list.iter().map(|&c| self.of(c).depth).max().unwrap_or(0);
+        self.note_copies(id, list);
+        let taken = |&c: &ShapeId| match self.copied.contains(&(id, self.core(c))) {
+            true => (1, 0),
+            false => (self.of(c).leaves, self.of(c).depth),
+        };
+        let leaves = list.iter().map(taken).fold(0u32, |sum, (n, _)| sum.saturating_add(n));
+        let depth = 1 + list.iter().map(taken).map(|(_, depth)| depth).max().unwrap_or(0);
         if leaves <= LARGEST_EXPRESSION && depth <= DEEPEST_EXPRESSION {
             return Facts { core: id, leaves, depth, inline: true };
         }
         Facts { core: id, leaves: list.len() as u32, depth: 1, inline: false }
+    }
+
+    /// Finds the operations that an operation takes many copies of.
+    fn note_copies(&mut self, id: ShapeId, list: &[ShapeId]) {
+        let operations = list.iter().map(|&c| self.of(c)).filter(|facts| facts.depth > 0);
+        let mut cores: Vec<ShapeId> = operations.map(|facts| facts.core).collect();
+        cores.sort_unstable();
+        let groups = cores.chunk_by(|a, b| a == b).filter(|group| group.len() >= MANY_COPIES);
+        self.copied.extend(groups.map(|group| (id, group[0])));
     }
 
     fn of(&self, id: ShapeId) -> Facts {
@@ -90,7 +111,8 @@ impl Structure {
 
     /// Whether the set operation `parent` takes the operation `child` (a core) into its expression.
     pub fn takes_in(&self, parent: ShapeId, child: ShapeId) -> bool {
-        self.of(parent).inline && self.of(child).depth > 0
+        let facts = self.of(child);
+        facts.depth > 0 && self.of(parent).inline && !self.copied.contains(&(parent, child))
     }
 
     /// The units that must be made before a unit.
@@ -191,6 +213,23 @@ mod tests {
         structure.extend(&graph);
         assert_eq!(structure.plan(&graph, &[four], |_| false), [vec![ball], vec![four]]);
         assert_eq!(structure.plan(&graph, &[four], |id| id == ball), [vec![four]]);
+    }
+
+    #[test]
+    fn many_copies_are_made_once() {
+        let mut graph = ShapeGraph::default();
+        let ball = add(&mut graph, Node::Sphere { r: 1.0, sides: None });
+        let pair = doubled(&mut graph, ball, 1.0);
+        let copy = |graph: &mut ShapeGraph, i: u32| {
+            let placement = Placement::translation(DVec3::Y * f64::from(i));
+            add(graph, Node::Transform { placement, child: pair })
+        };
+        let copies: Vec<ShapeId> = (0..3).map(|i| copy(&mut graph, i)).collect();
+        let all = add(&mut graph, Node::Union(Arc::from(copies)));
+        let mut structure = Structure::default();
+        structure.extend(&graph);
+        let waves = structure.plan(&graph, &[all], |_| false);
+        assert_eq!(waves, [vec![ball], vec![pair], vec![all]]);
     }
 
     #[test]

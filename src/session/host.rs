@@ -55,6 +55,10 @@ impl Session<'_> {
 }
 
 impl Geometry for Session<'_> {
+    fn settle_tolerance(&self, mm: f64) {
+        self.realizer.settle_tolerance(mm);
+    }
+
     fn measures(&self, graph: &ShapeGraph, shape: ShapeId) -> Result<Arc<Measures>, GeometryError> {
         self.realizer.measures(graph, shape)
     }

@@ -24,6 +24,9 @@ pub struct Model<'s> {
     instance: Option<InstanceId>,
 }
 
+/// Takes the bytes of a file; the error says in words why it could not be written.
+type Sink<'a> = &'a mut dyn FnMut(&Artifact, &[u8]) -> Result<(), String>;
+
 /// What `measure` found.
 #[derive(Debug, Default)]
 pub struct Measured {
@@ -96,7 +99,6 @@ impl<'s> Model<'s> {
             measured.diagnostics.extend(self.warnings(part.shape));
         }
         measured.diagnostics.extend(self.session.realizer.take_remarks());
-        measured.diagnostics = once_each(measured.diagnostics);
         measured
     }
 
@@ -169,11 +171,7 @@ impl<'s> Model<'s> {
 
     /// Makes the files one after the other and hands their bytes to `write`, whose words say why a
     /// file could not be written. One failing file does not stop the others.
-    pub fn build(
-        &self,
-        artifacts: &[Artifact],
-        write: &mut dyn FnMut(&Artifact, &[u8]) -> Result<(), String>,
-    ) -> Vec<Diagnostic> {
+    pub fn build(&self, artifacts: &[Artifact], write: Sink) -> Vec<Diagnostic> {
         let all: Vec<Part> = artifacts.iter().flat_map(|a| a.parts.clone()).collect();
         self.realize(&all);
         let mut diagnostics = vec![];
@@ -189,7 +187,7 @@ impl<'s> Model<'s> {
             diagnostics.extend(outcome.err());
         }
         diagnostics.extend(self.session.realizer.take_remarks());
-        once_each(diagnostics)
+        diagnostics
     }
 
     /// The tests in source order.
@@ -262,15 +260,4 @@ impl<'s> Model<'s> {
     fn warnings(&self, shape: ShapeId) -> Vec<Diagnostic> {
         realize::warnings(&self.session.realizer, self.evaluator.graph(), shape)
     }
-}
-
-/// Every diagnostic once, where it came first.
-fn once_each(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
-    let mut kept: Vec<Diagnostic> = vec![];
-    for diagnostic in diagnostics {
-        if !kept.contains(&diagnostic) {
-            kept.push(diagnostic);
-        }
-    }
-    kept
 }

@@ -87,6 +87,10 @@ pub enum InsideMethod {
 
 /// Answers about shapes. `session` hands one in; `realize` implements it. Results are kept by node.
 pub trait Geometry {
+    /// The model sets the chord error, in mm, before anything is measured. Ignored where one holds
+    /// already, or by those who mesh nothing.
+    fn settle_tolerance(&self, _mm: f64) {}
+
     /// Measures of a shape.
     fn measures(&self, graph: &ShapeGraph, shape: ShapeId) -> Result<Arc<Measures>, GeometryError>;
 

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Below a line of code, `//~ code: words` asks for a diagnostic of that code whose message has those
-//! words and whose primary place starts on that line; carets, where given, stand under exactly the
+//! words and whose first place in this file starts on that line; carets, where given, stand under exactly the
 //! characters of that place. `//~| words` asks the same diagnostic for a label, note or help with those
 //! words. No other diagnostic may come. `//~ run: ...` gives the command, `measure` by default.
 
@@ -66,7 +66,7 @@ fn faults(file: &Path) -> Vec<String> {
         .collect();
     let mut faults = vec![];
     for expected in expectations(&text) {
-        match found.iter().position(|d| is_met(&expected, d)) {
+        match found.iter().position(|d| is_met(&expected, d, name)) {
             Some(index) => drop(found.remove(index)),
             None => faults.push(format!(
                 "{name}:{}: missing `{}: {}` {:?} {:?}",
@@ -108,8 +108,9 @@ fn expectation(line: u64, offset: usize, rest: &str) -> Expected {
     Expected { line, carets, code: code.to_string(), words: words.to_string(), details: vec![] }
 }
 
-fn is_met(expected: &Expected, found: &Value) -> bool {
-    let place = &found["labels"][0];
+fn is_met(expected: &Expected, found: &Value, file: &str) -> bool {
+    let labels = found["labels"].as_array().cloned().unwrap_or_default();
+    let Some(place) = labels.iter().find(|label| label["path"] == file) else { return false };
     let length = || Some(place["end_column"].as_u64()? - place["column"].as_u64()?);
     let has = |value: &Value, words: &str| value.as_str().is_some_and(|s| s.contains(words));
     let label = |words: &str| {

@@ -4,3 +4,4 @@ mod cases;
 mod properties;
 mod random;
 mod solids;
+mod tiny;

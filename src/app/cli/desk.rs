@@ -64,10 +64,10 @@ impl Desk {
         Session::new(&self.disk, &self.watch, self.tolerance)
     }
 
-    /// Reports what was found, writes the timings if asked to, and says how the command ends.
+    /// Reports what was found, each thing once, writes the timings if asked to, and says how the command ends.
     pub fn report(&self, session: &Session, diagnostics: &[Diagnostic]) -> io::Result<Exit> {
         self.watch.end_bar();
-        render::report(self.style, &session.sources(), diagnostics)?;
+        render::report(self.style, &session.sources(), &once_each(diagnostics))?;
         let exit = Exit::of(diagnostics);
         let Some(path) = &self.timings else { return Ok(exit) };
         match write_beside(path, self.watch.timings().as_bytes()) {
@@ -80,6 +80,17 @@ impl Desk {
     pub fn watch(&self) -> &Stopwatch {
         &self.watch
     }
+}
+
+/// Every diagnostic once, where it came first: outputs that fail for one reason all say so.
+fn once_each(diagnostics: &[Diagnostic]) -> Vec<Diagnostic> {
+    let mut kept: Vec<Diagnostic> = vec![];
+    for diagnostic in diagnostics {
+        if !kept.contains(diagnostic) {
+            kept.push(diagnostic.clone());
+        }
+    }
+    kept
 }
 
 /// Writes a file that the user named by its path.

@@ -8,10 +8,7 @@ use crate::{
     eval::{
         evaluator::Evaluator,
         failure::{Failure, Outcome},
-        interpret::{
-            arithmetic::{Operands, clash},
-            compare::equal,
-        },
+        interpret::arithmetic::{Operands, clash},
         types::shown,
         value::{Function, Value},
     },
@@ -125,8 +122,9 @@ fn sort(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
         pairs.push((key, item.clone()));
     }
     let mut failure = None;
+    let mut steps = evaluator.steps_left();
     pairs.sort_by(|(a, _), (b, _)| {
-        order(args, a, b).unwrap_or_else(|found| {
+        order(args, a, b, &mut steps).unwrap_or_else(|found| {
             failure.get_or_insert(found);
             Ordering::Equal
         })
@@ -138,8 +136,12 @@ fn sort(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
 }
 
 /// Numbers by size, strings by their characters, lists by the first element that differs.
-fn order(args: &Args, a: &Value, b: &Value) -> Result<Ordering, Failure> {
+fn order(args: &Args, a: &Value, b: &Value, steps: &mut u64) -> Result<Ordering, Failure> {
     let at = args.span(0);
+    match steps.checked_sub(1) {
+        Some(left) => *steps = left,
+        None => return args.fail(0, Code::Limit, "sorting takes more steps than the limit allows"),
+    }
     match (a, b) {
         (Value::Number(a, x), Value::Number(b, y)) => match x.common(*y) {
             Some(_) => Ok(a.partial_cmp(b).unwrap_or(Ordering::Equal)),
@@ -149,7 +151,7 @@ fn order(args: &Args, a: &Value, b: &Value) -> Result<Ordering, Failure> {
         (Value::Bool(a), Value::Bool(b)) => Ok(a.cmp(b)),
         (Value::List(a), Value::List(b)) => {
             for (a, b) in a.iter().zip(b.iter()) {
-                let order = crate::eval::stack::deep(|| order(args, a, b))?;
+                let order = crate::eval::stack::deep(|| order(args, a, b, steps))?;
                 if order.is_ne() {
                     return Ok(order);
                 }
@@ -236,8 +238,8 @@ fn position(evaluator: &mut Evaluator, args: &Args) -> Outcome<Option<u64>> {
     let count = list.count().unwrap_or(0);
     for i in 0..count {
         evaluator.tick(1, args.call)?;
-        // Numbers of another dimension are not the wanted one; a list may hold several kinds.
-        if list.element(i).is_some_and(|item| equal(&item, wanted) == Ok(true)) {
+        let Some(item) = list.element(i) else { break };
+        if evaluator.same(&item, wanted, args.call)? {
             return Ok(Some(i));
         }
     }

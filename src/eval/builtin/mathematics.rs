@@ -7,10 +7,7 @@ use crate::{
         dimension::Dimension,
         evaluator::Evaluator,
         failure::{Outcome, fail},
-        interpret::{
-            arithmetic::{Operands, clash},
-            compare::equal,
-        },
+        interpret::arithmetic::{Operands, clash},
         stack::deep,
         types::shown,
         value::Value,
@@ -312,7 +309,10 @@ fn is_near(
                 Ok(true)
             }
             (Some(_), Some(_)) => Ok(false),
-            _ => equal(a, b).map_err(|(x, y)| clash(x, y, at, "`near`")),
+            _ => {
+                let places = Operands { whole: args.call, left: at.0, right: at.1 };
+                evaluator.equal(a, b, places)
+            }
         },
     }
 }

@@ -7,7 +7,7 @@ use crate::{
     base::Code,
     eval::{
         evaluator::Evaluator,
-        failure::Outcome,
+        failure::{Outcome, fail},
         nearest::did_you_mean,
         value::{Symbol, Value},
     },
@@ -32,20 +32,32 @@ pub const TABLE: &[(&str, Native)] = &[
 /// A shape after a map; maps that follow one another become one.
 fn place(evaluator: &mut Evaluator, args: &Args, placement: Placement) -> Outcome<Value> {
     let shape = args.shape(0)?;
-    let id = placed(evaluator, args, shape, placement);
+    let id = placed(evaluator, args, shape, placement)?;
     Ok(evaluator.shape_value(id))
 }
 
-fn placed(evaluator: &mut Evaluator, args: &Args, shape: ShapeId, placement: Placement) -> ShapeId {
+fn placed(
+    evaluator: &mut Evaluator,
+    args: &Args,
+    shape: ShapeId,
+    placement: Placement,
+) -> Outcome<ShapeId> {
     let (placement, child) = match evaluator.graph().node(shape) {
         Node::Transform { placement: inner, child } => (placement.after(inner), *child),
-        Node::Empty(_) => return shape,
+        Node::Empty(_) => return Ok(shape),
         _ => (placement, shape),
     };
     if placement.is_identity() {
-        return child;
+        return Ok(child);
     }
-    evaluator.add_node(Node::Transform { placement, child }, args.call)
+    if !(placement.linear().is_finite() && placement.offset().is_finite()) {
+        return fail(
+            Code::Degenerate,
+            args.call,
+            "the shape is moved or scaled beyond all numbers",
+        );
+    }
+    Ok(evaluator.add_node(Node::Transform { placement, child }, args.call))
 }
 
 fn moved(evaluator: &mut Evaluator, args: &Args, v: DVec3) -> Outcome<Value> {

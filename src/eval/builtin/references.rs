@@ -8,6 +8,7 @@ use crate::{
     eval::{
         evaluator::Evaluator,
         failure::{Outcome, fail},
+        stack::deep,
         testing::Write,
         value::{Value, number_text},
     },
@@ -131,19 +132,20 @@ fn lines<'a>(a: &'a str, b: &'a str) -> Vec<(&'a str, &'a str)> {
 
 /// What a person can check: measures of a shape, a list or record line by line.
 fn describe(evaluator: &mut Evaluator, args: &Args, value: &Value) -> Outcome<String> {
+    evaluator.tick(1, args.call)?;
     match value {
         Value::Solid(id) | Value::Profile(id) => describe_shape(evaluator, args, *id),
         Value::List(list) if !list.is_empty() => {
             let mut text = String::new();
             for item in list.iter() {
-                text.push_str(&describe(evaluator, args, item)?);
+                text.push_str(&deep(|| describe(evaluator, args, item))?);
             }
             Ok(text)
         }
         Value::Record(record) => {
             let mut text = String::new();
             for (key, value) in record.fields() {
-                let inner = describe(evaluator, args, value)?;
+                let inner = deep(|| describe(evaluator, args, value))?;
                 match inner.lines().count() {
                     0 | 1 => text.push_str(&format!("{key} = {inner}")),
                     _ => text.push_str(&format!("{key}:\n{inner}")),

@@ -13,6 +13,10 @@ use crate::{
     syntax::ast::BinaryOp,
 };
 
+/// Operands of a node that a chain `a + b + c` lengthens in place of nesting; beyond it the longer
+/// chain holds the shorter one, so that a loop of n additions takes memory in proportion to n.
+const LONGEST: usize = 64;
+
 /// The three set operations.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum SetOperation {
@@ -93,7 +97,7 @@ impl Evaluator<'_> {
         let mut flat: Vec<ShapeId> = Vec::with_capacity(ids.len());
         for id in ids {
             match self.graph.node(id) {
-                Node::Union(inner) => flat.extend(inner.iter()),
+                Node::Union(inner) if inner.len() <= LONGEST => flat.extend(inner.iter()),
                 Node::Empty(_) => {}
                 _ => flat.push(id),
             }
@@ -115,17 +119,23 @@ impl Evaluator<'_> {
         at: Span,
     ) -> ShapeId {
         let (mut list, known) = match self.graph.node(minuend) {
-            Node::Difference(inner) => (inner.to_vec(), inner.len()),
+            Node::Difference(inner) if inner.len() <= LONGEST => (inner.to_vec(), inner.len()),
             Node::Empty(_) => return minuend,
             _ => (vec![minuend], 1),
         };
         for id in others {
             match self.graph.node(id) {
-                Node::Union(inner) => list.extend(inner.iter()),
+                Node::Union(inner) if inner.len() <= LONGEST => list.extend(inner.iter()),
                 Node::Empty(_) => {}
                 _ => list.push(id),
             }
         }
+        let mut seen = rustc_hash::FxHashSet::default();
+        let mut index = 0;
+        list.retain(|id| {
+            index += 1;
+            index == 1 || seen.insert(*id)
+        });
         if list.len() == known { minuend } else { self.add_node(Node::Difference(list.into()), at) }
     }
 
@@ -133,7 +143,7 @@ impl Evaluator<'_> {
         let mut flat: Vec<ShapeId> = vec![];
         for &id in ids {
             match self.graph.node(id) {
-                Node::Intersection(inner) => flat.extend(inner.iter()),
+                Node::Intersection(inner) if inner.len() <= LONGEST => flat.extend(inner.iter()),
                 Node::Empty(_) => return id,
                 _ => flat.push(id),
             }

@@ -179,6 +179,7 @@ impl Evaluator<'_> {
         mut work: impl FnMut(&mut Self, Value) -> Outcome<Value>,
     ) -> Outcome<Value> {
         let items = self.items(list, at.whole)?;
+        self.room(items.len(), at.whole)?;
         let mut values = Vec::with_capacity(items.len());
         for item in items.iter() {
             values.push(deep(|| work(self, item.clone()))?);
@@ -201,6 +202,7 @@ impl Evaluator<'_> {
                 .label(at.right, format!("{} elements", b.len()));
             return Err(error.help("`++` joins lists").into());
         }
+        self.room(a.len(), at.whole)?;
         let mut values = Vec::with_capacity(a.len());
         for (x, y) in a.iter().zip(b.iter()) {
             values.push(deep(|| self.binary(op, x.clone(), y.clone(), at))?);
@@ -229,6 +231,7 @@ impl Evaluator<'_> {
             Value::Number(number, dimension) => Ok(Value::Number(-number, dimension)),
             list @ (Value::List(_) | Value::Range(_)) => {
                 let items = self.items(&list, at)?;
+                self.room(items.len(), at)?;
                 let mut values = Vec::with_capacity(items.len());
                 for item in items.iter() {
                     values.push(deep(|| self.negate(item.clone(), at))?);

@@ -30,8 +30,8 @@ pub type Bound = Vec<Option<(Value, Span)>>;
 /// Why a signature does not take the arguments.
 #[derive(Debug)]
 enum Mismatch {
-    /// The named argument of that number is no parameter.
-    Unknown(usize),
+    /// The named argument of that number is no parameter, though `known` others are.
+    Unknown { argument: usize, known: usize },
     /// A named argument stands twice.
     Twice(usize),
     /// The positional argument of that number has no parameter left.
@@ -44,14 +44,13 @@ enum Mismatch {
 
 impl Mismatch {
     /// How close the signature came: the best one is reported.
-    fn closeness(&self) -> usize {
+    fn closeness(&self) -> (usize, usize) {
         match self {
-            Mismatch::Kind { param: 0, .. } => 0,
-            Mismatch::Unknown(_) => 1,
-            Mismatch::TooMany(_) => 2,
-            Mismatch::Kind { .. } => 3,
-            Mismatch::Twice(_) => 4,
-            Mismatch::Missing(_) => 5,
+            Mismatch::TooMany(_) => (0, 0),
+            Mismatch::Unknown { known, .. } => (1, *known),
+            Mismatch::Kind { param, .. } => (2, *param),
+            Mismatch::Twice(_) => (3, 0),
+            Mismatch::Missing(_) => (4, 0),
         }
     }
 }
@@ -81,11 +80,14 @@ impl Evaluator<'_> {
 
     fn fit(&self, code: &FunctionCode, call: &Call) -> Result<Bound, Mismatch> {
         let mut bound: Bound = vec![None; code.params.len()];
-        for (i, (name, value, span)) in call.named.iter().enumerate() {
-            let index = code.params.iter().position(|param| param.name == name.text);
-            let index = index.ok_or(Mismatch::Unknown(i))?;
+        for (argument, (name, value, span)) in call.named.iter().enumerate() {
+            let find = |name: &ast::Name| code.params.iter().position(|p| p.name == name.text);
+            let Some(index) = find(name) else {
+                let known = call.named.iter().filter(|named| find(&named.0).is_some()).count();
+                return Err(Mismatch::Unknown { argument, known });
+            };
             if bound[index].replace((value.clone(), *span)).is_some() {
-                return Err(Mismatch::Twice(i));
+                return Err(Mismatch::Twice(argument));
             }
         }
         let free: Vec<usize> = code.positional().filter(|&i| bound[i].is_none()).collect();
@@ -127,7 +129,9 @@ impl Evaluator<'_> {
         let code = &signatures[number].code;
         let name = function.name().unwrap_or("this function");
         let error = match mismatch {
-            Mismatch::Unknown(i) => unknown_argument(function, &call.named[i].0, name),
+            Mismatch::Unknown { argument, .. } => {
+                unknown_argument(function, &call.named[argument].0, name)
+            }
             Mismatch::Twice(i) => {
                 let message = format!("`{}` is given twice", call.named[i].0.text);
                 Diagnostic::error(Code::BadCall, message).label(call.named[i].0.span, "")

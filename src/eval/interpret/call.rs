@@ -293,6 +293,7 @@ impl Evaluator<'_> {
         call: Span,
     ) -> Outcome<Value> {
         self.tick(1, call)?;
+        self.room(0, call)?;
         let params = &code.params;
         native(self, &Args { values, spans, params, call, caller })
     }

@@ -74,7 +74,7 @@ impl Evaluator<'_> {
         }
         if let Some(value) = self.eval_element(frame, code.body)? {
             gathered.push(value);
-            if gathered.len() % LOOK == 0 {
+            if gathered.len().is_multiple_of(LOOK) {
                 self.room(gathered.len(), span)?;
             }
         }

@@ -19,6 +19,10 @@ use crate::{
     syntax::ast::OutputKind,
 };
 
+/// Elements compared to find out whether two instances have equal parameters; larger values make
+/// instances of their own.
+const LONGEST_COMPARISON: u64 = 100_000;
+
 impl Evaluator<'_> {
     /// The value of a top-level name.
     pub(in crate::eval) fn global(
@@ -194,7 +198,8 @@ impl Evaluator<'_> {
     }
 
     /// The instance of a file with these parameters: an equal one made before, or a new one, whose
-    /// parameters and asserts are checked.
+    /// parameters and asserts are checked. The tolerance that the first file sets is settled before
+    /// its asserts measure anything.
     pub(in crate::eval) fn instance(
         &mut self,
         path: &Arc<str>,
@@ -213,8 +218,14 @@ impl Evaluator<'_> {
             };
         }
         let id = InstanceId(self.instances.len() as u32);
-        self.room(unit.globals.len(), at)?;
+        self.cells_made += unit.globals.len() as u64;
+        self.room(0, at)?;
+        let is_entry = self.instance_index.is_empty();
+        self.instance_index.entry(fingerprint(path, &given)).or_default().push(id);
         self.instances.push(Instance::new(unit, given));
+        if is_entry && let Some(mm) = self.tolerance(id) {
+            self.host.settle_tolerance(mm);
+        }
         match self.admit(id) {
             Ok(()) => Ok(id),
             Err(failure) => {
@@ -226,14 +237,17 @@ impl Evaluator<'_> {
 
     fn find_instance(&self, path: &str, given: &[Given]) -> Option<InstanceId> {
         let same = |a: &Given, b: &Given| {
-            a.name == b.name && super::compare::equal(&a.value, &b.value) == Ok(true)
+            let mut steps = LONGEST_COMPARISON;
+            let equal = super::compare::equal(&a.value, &b.value, &mut steps);
+            a.name == b.name && equal == Ok(true)
         };
-        let found = self.instances.iter().position(|instance| {
+        let candidates = self.instance_index.get(&fingerprint(path, given))?;
+        candidates.iter().copied().find(|id| {
+            let instance = &self.instances[id.0 as usize];
             *instance.unit.path == *path
                 && instance.given.len() == given.len()
                 && instance.given.iter().zip(given).all(|(a, b)| same(a, b))
-        });
-        found.map(|index| InstanceId(index as u32))
+        })
     }
 
     fn check_known(&self, unit: &Unit, given: &Given, at: Span) -> Outcome<()> {
@@ -268,9 +282,7 @@ impl Evaluator<'_> {
             let checked = self.global(id, param.global, at).map(|_| ());
             self.keep_first(&mut result, checked);
         }
-        if result.is_err() {
-            return result;
-        }
+        result.as_ref().map_err(Failure::clone)?;
         for assert in &unit.asserts {
             let checked = self.in_frame(id, unit.frame, |this, frame| this.assert(frame, assert));
             if self.dry && matches!(&checked, Err(failure) if failure.diagnostic().is_none()) {
@@ -334,7 +346,11 @@ impl Evaluator<'_> {
                 fits && range.admits(*number)
             }
             (Value::List(list), value) => {
-                list.iter().any(|choice| super::compare::equal(choice, value) == Ok(true))
+                let mut found = false;
+                for choice in list.iter() {
+                    found = found || self.same(choice, value, span)?;
+                }
+                found
             }
             (other, _) => {
                 let words = format!("a parameter lies in a range or a list, got {}", shown(other));
@@ -435,6 +451,23 @@ impl CallRecord {
             None => "a lambda".into(),
         }
     }
+}
+
+/// Equal for equal parameters; numbers and strings tell most others apart.
+fn fingerprint(path: &str, given: &[Given]) -> u64 {
+    use std::hash::{Hash, Hasher};
+    let mut hasher = rustc_hash::FxHasher::default();
+    path.hash(&mut hasher);
+    for given in given {
+        given.name.hash(&mut hasher);
+        match &given.value {
+            // 0 and -0 are equal.
+            Value::Number(value, _) => (value + 0.0).to_bits().hash(&mut hasher),
+            Value::Text(text) => text.hash(&mut hasher),
+            _ => {}
+        }
+    }
+    hasher.finish()
 }
 
 fn placed(error: Diagnostic, at: Option<Span>) -> Diagnostic {

@@ -28,6 +28,9 @@ use super::{
 };
 use crate::base::{self, Diagnostic, Span};
 
+/// Values that a node of the shape graph counts for: it takes about 400 bytes with its index.
+const VALUES_A_NODE: u64 = 24;
+
 /// Where code runs: its unit and instance, the slots of its frame, and what it captured.
 #[derive(Clone, Copy)]
 pub struct Frame<'u> {
@@ -263,9 +266,15 @@ impl Evaluator<'_> {
         fail(base::Code::Limit, self.shown_at(span), message)
     }
 
+    /// Steps until the limit.
+    pub(super) fn steps_left(&self) -> u64 {
+        self.limits.steps.saturating_sub(self.steps_taken)
+    }
+
     /// Makes sure that `count` more values may be kept.
     pub(super) fn room(&mut self, count: usize, span: Span) -> Outcome<()> {
-        let alive = meter::live().saturating_add(count as u64);
+        let built = self.graph.len() as u64 * VALUES_A_NODE + self.cells_made;
+        let alive = meter::live().saturating_add(count as u64).saturating_add(built);
         if alive <= self.limits.values {
             return Ok(());
         }

@@ -169,6 +169,9 @@ impl Resolver<'_> {
             ItemKind::Param(param) => self.param(param, group.clone(), globals),
             ItemKind::Group(title) => *group = Some(literal(title)),
             ItemKind::Set { name, value } => {
+                if &*name.text == "kernel" && self.refuse_kernel(value) {
+                    return;
+                }
                 let (value, frame) = self.framed(|this| this.expression(value));
                 self.unit.settings.push(Setting { name: name.clone(), value, frame });
             }
@@ -177,6 +180,18 @@ impl Resolver<'_> {
             ItemKind::Test(test) => self.test(test, item.span),
             ItemKind::Stmt { stmt, .. } => self.top_level(stmt, globals),
         }
+    }
+
+    /// Says that a kernel does not exist when its name is unknown.
+    fn refuse_kernel(&mut self, value: &ast::Expr) -> bool {
+        let ast::ExprKind::Name(name) = &value.kind else { return false };
+        if self.find(&name.text).is_some() {
+            return false;
+        }
+        let message = format!("there is no kernel `{}`", name.text);
+        let error = Diagnostic::error(base::Code::UnknownName, message).label(name.span, "");
+        self.diagnostics.push(error.help("the kernels are `EXACT`"));
+        true
     }
 
     fn top_level(&mut self, stmt: &ast::Stmt, globals: &mut std::ops::Range<usize>) {
@@ -222,23 +237,21 @@ impl Resolver<'_> {
 
     fn use_item(&mut self, used: &ast::Use, globals: &mut std::ops::Range<usize>) {
         let placeholder = self.constant(Value::NONE, used.path.span);
-        let first = self.set_global(globals, placeholder, 0);
-        let number = match self.unit.globals[first].kind {
-            GlobalKind::Module(number) | GlobalKind::Imported(number, _) => number as usize,
-            _ => 0,
-        };
         match &used.clause {
             ast::UseClause::Names(names) => {
-                for _ in names.iter().skip(1) {
+                for _ in names {
                     self.set_global(globals, placeholder, 0);
                 }
             }
-            ast::UseClause::Module { with: Some(with), .. } => {
-                let (with, frame) = self.framed(|this| this.expression(with));
-                self.unit.uses[number].with = Some(with);
-                self.unit.uses[number].frame = frame;
+            ast::UseClause::Module { with, .. } => {
+                let global = self.set_global(globals, placeholder, 0);
+                let GlobalKind::Module(number) = self.unit.globals[global].kind else { return };
+                if let Some(with) = with {
+                    let (with, frame) = self.framed(|this| this.expression(with));
+                    let used = &mut self.unit.uses[number as usize];
+                    (used.with, used.frame) = (Some(with), frame);
+                }
             }
-            ast::UseClause::Module { with: None, .. } => {}
         }
     }
 

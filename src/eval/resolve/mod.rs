@@ -150,6 +150,11 @@ impl Resolver<'_> {
     }
 
     fn unknown(&self, name: &ast::Name) -> Diagnostic {
+        /// Unknown names for which near ones are looked up; more are one cause, such as a lost `use`.
+        const EXPLAINED: usize = 50;
+        if self.diagnostics.len() > EXPLAINED {
+            return unknown_name(name, std::iter::empty());
+        }
         let locals = self.scopes.iter().flat_map(Scope::names);
         let globals = self.unit.names.keys().map(|name| &**name);
         let known = locals.chain(globals).chain(self.library.names());

@@ -2,12 +2,13 @@
 
 use std::fmt::{self, Write};
 
-use super::Value;
+use super::{Range, Value};
 
-/// Elements of a list or record that are printed before it is cut short.
-const SHOWN: usize = 64;
+/// Elements of lists and records that are printed before the text is cut short: a list that holds
+/// itself many times over would print without end.
+const SHOWN: usize = 1000;
 /// Levels of nesting that are printed.
-const DEPTH: usize = 8;
+const DEPTH: usize = 16;
 
 /// A float in its shortest form that reads back as the same number; exponent form outside
 /// 1e-7..1e17.
@@ -34,75 +35,91 @@ impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Value::Text(text) => f.write_str(text),
-            value => write_value(f, value, DEPTH),
+            value => Printer { f, left: SHOWN }.value(value, DEPTH),
         }
     }
 }
 
-fn write_value(f: &mut fmt::Formatter<'_>, value: &Value, depth: usize) -> fmt::Result {
-    match value {
-        Value::Symbol(symbol) => write!(f, "{symbol}"),
-        Value::Bool(value) => write!(f, "{value}"),
-        Value::Number(value, dimension) => write!(f, "{}{dimension}", number_text(*value)),
-        Value::Text(text) => write_quoted(f, text),
-        Value::List(_) | Value::Record(_) if depth == 0 => f.write_str("..."),
-        Value::List(list) => write_list(f, list, depth),
-        Value::Record(record) => write_record(f, record.fields(), depth),
-        Value::Range(range) => {
-            let dots = if range.inclusive { ".." } else { "..<" };
-            let (unit, end) = (range.dimension, number_text(range.end));
-            write!(f, "{}{unit}{dots}{end}{unit}", number_text(range.start))?;
-            match range.explicit {
-                true => write!(f, " step {}{unit}", number_text(range.step)),
-                false => Ok(()),
+struct Printer<'a, 'b> {
+    f: &'a mut fmt::Formatter<'b>,
+    /// Elements that may still be printed.
+    left: usize,
+}
+
+impl Printer<'_, '_> {
+    fn value(&mut self, value: &Value, depth: usize) -> fmt::Result {
+        match value {
+            Value::Symbol(symbol) => write!(self.f, "{symbol}"),
+            Value::Bool(value) => write!(self.f, "{value}"),
+            Value::Number(value, dimension) => {
+                write!(self.f, "{}{dimension}", number_text(*value))
+            }
+            Value::Text(text) => self.quoted(text),
+            Value::List(_) | Value::Record(_) if depth == 0 => self.f.write_str("..."),
+            Value::List(list) => {
+                let items = list.iter().map(|item| (None, item));
+                self.elements("[", items, "]", depth)
+            }
+            Value::Record(record) => {
+                let fields = record.fields().iter().map(|(key, value)| (Some(&**key), value));
+                self.elements("{ ", fields, " }", depth)
+            }
+            Value::Range(range) => self.range(range),
+            Value::Function(function) => match function.name() {
+                Some(name) => write!(self.f, "<function {name}>"),
+                None => self.f.write_str("<function>"),
+            },
+            Value::Solid(_) => self.f.write_str("<solid>"),
+            Value::Profile(_) => self.f.write_str("<profile>"),
+            Value::Module(_) => self.f.write_str("<module>"),
+        }
+    }
+
+    fn elements<'v>(
+        &mut self,
+        open: &str,
+        items: impl Iterator<Item = (Option<&'v str>, &'v Value)>,
+        close: &str,
+        depth: usize,
+    ) -> fmt::Result {
+        self.f.write_str(open)?;
+        for (i, (key, item)) in items.enumerate() {
+            if i > 0 {
+                self.f.write_str(", ")?;
+            }
+            let Some(left) = self.left.checked_sub(1) else {
+                self.f.write_str("...")?;
+                break;
+            };
+            self.left = left;
+            if let Some(key) = key {
+                write!(self.f, "{key} = ")?;
+            }
+            self.value(item, depth - 1)?;
+        }
+        self.f.write_str(close)
+    }
+
+    fn range(&mut self, range: &Range) -> fmt::Result {
+        let dots = if range.inclusive { ".." } else { "..<" };
+        let (unit, end) = (range.dimension, number_text(range.end));
+        write!(self.f, "{}{unit}{dots}{end}{unit}", number_text(range.start))?;
+        match range.explicit {
+            true => write!(self.f, " step {}{unit}", number_text(range.step)),
+            false => Ok(()),
+        }
+    }
+
+    fn quoted(&mut self, text: &str) -> fmt::Result {
+        self.f.write_char('"')?;
+        for c in text.chars() {
+            match c {
+                '"' | '\\' => write!(self.f, "\\{c}")?,
+                '\n' => self.f.write_str("\\n")?,
+                '\t' => self.f.write_str("\\t")?,
+                c => self.f.write_char(c)?,
             }
         }
-        Value::Function(function) => match function.name() {
-            Some(name) => write!(f, "<function {name}>"),
-            None => f.write_str("<function>"),
-        },
-        Value::Solid(_) => f.write_str("<solid>"),
-        Value::Profile(_) => f.write_str("<profile>"),
-        Value::Module(_) => f.write_str("<module>"),
+        self.f.write_char('"')
     }
-}
-
-fn write_quoted(f: &mut fmt::Formatter<'_>, text: &str) -> fmt::Result {
-    f.write_char('"')?;
-    for c in text.chars() {
-        match c {
-            '"' | '\\' => write!(f, "\\{c}")?,
-            '\n' => f.write_str("\\n")?,
-            '\t' => f.write_str("\\t")?,
-            c => f.write_char(c)?,
-        }
-    }
-    f.write_char('"')
-}
-
-fn write_list(f: &mut fmt::Formatter<'_>, list: &[Value], depth: usize) -> fmt::Result {
-    f.write_char('[')?;
-    for (i, item) in list.iter().take(SHOWN).enumerate() {
-        if i > 0 {
-            f.write_str(", ")?;
-        }
-        write_value(f, item, depth - 1)?;
-    }
-    f.write_str(if list.len() > SHOWN { ", ...]" } else { "]" })
-}
-
-fn write_record(
-    f: &mut fmt::Formatter<'_>,
-    fields: &[(std::sync::Arc<str>, Value)],
-    depth: usize,
-) -> fmt::Result {
-    f.write_str("{ ")?;
-    for (i, (key, value)) in fields.iter().take(SHOWN).enumerate() {
-        if i > 0 {
-            f.write_str(", ")?;
-        }
-        write!(f, "{key} = ")?;
-        write_value(f, value, depth - 1)?;
-    }
-    f.write_str(if fields.len() > SHOWN { ", ... }" } else { " }" })
 }

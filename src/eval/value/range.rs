@@ -71,9 +71,9 @@ fn count(steps: f64, inclusive: bool) -> u64 {
     let whole = steps.round();
     let exact = (steps - whole).abs() <= WHOLE * steps.abs().max(1.0);
     match (exact, inclusive) {
-        (true, true) => whole as u64 + 1,
+        (true, true) => (whole as u64).saturating_add(1),
         (true, false) => whole as u64,
-        (false, _) => steps.floor() as u64 + 1,
+        (false, _) => (steps.floor() as u64).saturating_add(1),
     }
 }
 
@@ -90,6 +90,7 @@ mod tests {
         assert_eq!(Range::new(5.0, 0.0, Some(-1.0), 1.0, true).count(), 6);
         assert_eq!(Range::new(0.0, 0.0, None, 1.0, false).count(), 0);
         assert_eq!(Range::new(0.0, 2.5, None, 1.0, true).count(), 3);
+        assert_eq!(Range::new(-1e308, 1e308, None, 1.0, true).count(), u64::MAX);
     }
 
     #[test]

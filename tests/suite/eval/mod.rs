@@ -2,4 +2,7 @@
 
 mod host;
 mod library;
+mod mutants;
+mod refusals;
+mod shapes;
 mod values;

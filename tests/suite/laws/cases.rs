@@ -172,3 +172,13 @@ fn untouched_corners_keep_their_coordinates() {
     }
     assert_eq!(after.mesh().points.iter().filter(|p| p.z == 5.0).count(), 4);
 }
+
+#[test]
+fn new_corners_stay_on_faces_whose_place_is_no_decimal() {
+    let third = 1.0 / 3.0;
+    let a = block([third; 3], [10.0 * third; 3]);
+    let cut = block([1.0; 3], [20.0; 3]);
+    let after = solid(&less(vec![a, cut]));
+    let on = |x: f64| after.mesh().points.iter().filter(|p| p.x == x).count();
+    assert_eq!((on(third), on(1.0), on(10.0 * third)), (4, 4, 6));
+}

@@ -114,3 +114,9 @@ pub fn euler(solid: &Polyhedron) -> i64 {
     }
     used.len() as i64 - edges.len() as i64 + faces
 }
+
+/// A tree scaled about the origin.
+pub fn scaled(factor: f64, tree: Tree) -> Tree {
+    let linear = DMat3::from_diagonal(DVec3::splat(factor));
+    Tree::Placed(Placement::new(linear, DVec3::ZERO), Box::new(tree))
+}

@@ -9,6 +9,7 @@ use super::{
     classify::Sides,
     facet::Facets,
     frame::Plan,
+    hierarchy::Bounds,
     lattice::Lattice,
     origins::{Key, Labels},
     outline::Outline,
@@ -48,12 +49,38 @@ impl Assembly<'_> {
 
     /// Where a point stands in the result. A corner of a leaf stands where the leaf's placement puts
     /// it, untouched by the lattice.
-    fn place(&self, point: u32) -> DVec3 {
+    fn place(&self, point: u32, levels: &FxHashMap<(usize, i64), f64>) -> DVec3 {
         if let Some(&(leaf, corner)) = self.facets.sources.get(point as usize) {
             let leaf = &self.plan.leaves[leaf as usize];
             return leaf.full.point(leaf.solid.mesh().points[corner as usize]);
         }
-        self.plan.frame.point(self.lattice.place(self.space.near(point)))
+        let near = self.space.near(point);
+        let mut place = self.lattice.place(near);
+        for axis in 0..3 {
+            if let Some(&level) = levels.get(&(axis, near[axis] as i64)) {
+                if near[axis].fract() == 0.0 {
+                    place[axis] = level;
+                }
+            }
+        }
+        self.plan.frame.point(place)
+    }
+
+    /// Where the faces across an axis were before they were snapped: their new corners go there too,
+    /// so that they stay exactly flat.
+    fn levels(&self) -> FxHashMap<(usize, i64), f64> {
+        let mut levels = FxHashMap::default();
+        for (number, facet) in (0u32..).zip(self.facets.list()) {
+            let Bounds { min, max } = facet.bounds;
+            for axis in (0..3).filter(|&axis| min[axis] == max[axis]) {
+                let corner = self.facets.loops(number).next().map_or(0, |l| l[0]);
+                let (leaf, source) = self.facets.sources[corner as usize];
+                let leaf = &self.plan.leaves[leaf as usize];
+                let there = leaf.local.point(leaf.solid.mesh().points[source as usize]);
+                levels.entry((axis, i64::from(min[axis]))).or_insert(there[axis]);
+            }
+        }
+        levels
     }
 
     /// Every loop as mesh points, and for every edge a number that both its sides share.
@@ -66,6 +93,7 @@ impl Assembly<'_> {
     ) -> Vec<Vec<(u32, u32)>> {
         let mut numbers = vec![NONE; outline.vertex.len()];
         let mut loops = vec![];
+        let levels = self.levels();
         for (_, halves) in &outline.loops {
             let vertex = |half: u32| outline.vertex[half as usize] as usize;
             let kept: Vec<usize> =
@@ -76,7 +104,7 @@ impl Assembly<'_> {
                 let number = &mut numbers[vertex(half)];
                 if *number == NONE {
                     *number = mesh.points.len() as u32;
-                    mesh.points.push(self.place(boundary.origin[half as usize]));
+                    mesh.points.push(self.place(boundary.origin[half as usize], &levels));
                 }
                 let next = kept[(k + 1) % kept.len()];
                 let last = halves[(next + halves.len() - 1) % halves.len()];

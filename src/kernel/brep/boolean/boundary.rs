@@ -40,8 +40,8 @@ impl Boundary {
         let keys: Vec<Option<Key>> =
             cells.map(|c| up[c as usize].map(|up| labels.key(complex, c, up))).collect();
         let (origin, next) = directed(complex, &up);
-        let twin = twins(complex, sides, &up);
-        let polygon = polygons(complex, &twin, &keys);
+        let (twin, crowded) = twins(complex, sides, &up);
+        let polygon = polygons(complex, &twin, &crowded, &keys);
         Boundary { origin, next, twin, polygon, keys }
     }
 
@@ -77,8 +77,10 @@ fn directed(complex: &Complex, up: &[Option<bool>]) -> (Vec<u32>, Vec<u32>) {
     (origin, next)
 }
 
-fn twins(complex: &Complex, sides: &Sides, up: &[Option<bool>]) -> Vec<u32> {
+/// The links, and whether more than two half-edges of the result run along each edge.
+fn twins(complex: &Complex, sides: &Sides, up: &[Option<bool>]) -> (Vec<u32>, Vec<bool>) {
     let mut twin = vec![NONE; complex.halves.len()];
+    let mut crowded = vec![false; complex.edge_count()];
     let mut radial = sides.radial.iter().peekable();
     let mut kept = vec![];
     for edge in 0..complex.edge_count() {
@@ -86,6 +88,7 @@ fn twins(complex: &Complex, sides: &Sides, up: &[Option<bool>]) -> Vec<u32> {
         let around = sorted.map_or(complex.around(edge), |r| &r.1).iter().copied();
         kept.clear();
         kept.extend(around.filter(|&h| up[complex.halves[h as usize].cell as usize].is_some()));
+        crowded[edge] = kept.len() > 2;
         for (i, &half) in kept.iter().enumerate() {
             if sides.inside[following_side(complex, half) as usize] {
                 let next = kept[(i + 1) % kept.len()];
@@ -94,14 +97,17 @@ fn twins(complex: &Complex, sides: &Sides, up: &[Option<bool>]) -> Vec<u32> {
             }
         }
     }
-    twin
+    (twin, crowded)
 }
 
-fn polygons(complex: &Complex, twin: &[u32], keys: &[Option<Key>]) -> Vec<u32> {
+/// Joins equal cells across edges where nothing else is. Where the result touches itself an edge
+/// stays, so that all that touches there has it.
+fn polygons(complex: &Complex, twin: &[u32], crowded: &[bool], keys: &[Option<Key>]) -> Vec<u32> {
     let cell = |half: u32| complex.halves[half as usize].cell;
     let mut sets = Sets::new(complex.cell_count());
     for (half, &back) in (0u32..).zip(twin) {
-        if back != NONE && keys[cell(half) as usize] == keys[cell(back) as usize] {
+        let alone = !crowded[complex.halves[half as usize].edge as usize];
+        if back != NONE && alone && keys[cell(half) as usize] == keys[cell(back) as usize] {
             sets.join(cell(half), cell(back));
         }
     }

@@ -4,8 +4,6 @@
 //! points, and a lower one. The normal is that of its plane, or the facet's own for a facet that
 //! nothing touches.
 
-use rustc_hash::FxHashMap;
-
 use super::{
     facet::Facets,
     space::{NONE, Space},
@@ -121,35 +119,37 @@ impl Complex {
         self.halves[half as usize].origin < self.target(half)
     }
 
-    /// Finds the half-edges that run along the same edges.
-    pub fn finish(&mut self) {
-        let mut numbers: FxHashMap<u64, u32> = FxHashMap::default();
-        numbers.reserve(self.halves.len() / 2);
-        let mut counts: Vec<u32> = vec![];
-        for half in 0..self.halves.len() {
-            let (a, b) = (self.halves[half].origin, self.target(half as u32));
-            let key = u64::from(a.min(b)) << 32 | u64::from(a.max(b));
-            let edge = *numbers.entry(key).or_insert(counts.len() as u32);
-            if edge as usize == counts.len() {
-                counts.push(0);
-            }
-            counts[edge as usize] += 1;
-            self.halves[half].edge = edge;
-        }
-        let mut sum = 0;
-        let mut fill = Vec::with_capacity(counts.len());
-        for count in &mut counts {
-            fill.push(sum);
-            sum += *count;
-            *count = sum;
-        }
-        self.edge_ends = counts;
-        self.incident = vec![0; self.halves.len()];
-        for (number, half) in (0u32..).zip(&self.halves) {
-            let slot = &mut fill[half.edge as usize];
-            self.incident[*slot as usize] = number;
+    /// Finds the half-edges that run along the same edges: those with the same smaller point are
+    /// brought together by counting, and sorted by their larger point.
+    pub fn finish(&mut self, points: usize) {
+        let ends: Vec<(u32, u32)> = (0..self.halves.len() as u32)
+            .map(|half| (self.halves[half as usize].origin, self.target(half)))
+            .map(|(a, b)| (a.min(b), a.max(b)))
+            .collect();
+        let mut fill = vec![0u32; points + 1];
+        ends.iter().for_each(|&(low, _)| fill[low as usize + 1] += 1);
+        (0..points).for_each(|i| fill[i + 1] += fill[i]);
+        let starts = fill.clone();
+        let mut incident = vec![0u32; ends.len()];
+        for (half, &(low, _)) in (0u32..).zip(&ends) {
+            let slot = &mut fill[low as usize];
+            incident[*slot as usize] = half;
             *slot += 1;
         }
+        for range in starts.windows(2) {
+            let run = &mut incident[range[0] as usize..range[1] as usize];
+            run.sort_unstable_by_key(|&half| (ends[half as usize].1, half));
+        }
+        for (i, &half) in incident.iter().enumerate() {
+            if i > 0 && ends[incident[i - 1] as usize] != ends[half as usize] {
+                self.edge_ends.push(i as u32);
+            }
+            self.halves[half as usize].edge = self.edge_ends.len() as u32;
+        }
+        if !incident.is_empty() {
+            self.edge_ends.push(incident.len() as u32);
+        }
+        self.incident = incident;
     }
 
     /// Sorts half-edges along one edge by the angle of their cells around it, counter-clockwise seen

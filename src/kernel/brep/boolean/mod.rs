@@ -194,6 +194,6 @@ fn complex(facets: &mut Facets, space: &mut space::Space, trusted: bool) -> Comp
         let traces: Vec<_> = members.iter().flat_map(range).copied().collect();
         arrange::arrange(&members, &traces, facets, space, trusted, &mut complex);
     }
-    complex.finish();
+    complex.finish(space.point_count());
     complex
 }

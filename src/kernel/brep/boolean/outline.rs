@@ -1,7 +1,9 @@
 //! The outlines of merged polygons: loops, the vertices where they meet, and which of those stay.
 //!
 //! Around a point every fan of linked polygons gets a vertex of its own, so solids that touch in a
-//! point come apart. A vertex where only two polygons meet, along one straight line, is dropped.
+//! point come apart. A vertex where only two polygons meet, along one straight line, is dropped,
+//! unless the result touches itself there: a result that is used again shares its points where it
+//! touches itself.
 
 use rustc_hash::FxHashMap;
 
@@ -65,11 +67,17 @@ impl Outline {
         for half in boundary.outer() {
             *leaving.entry(self.vertex[half as usize]).or_default() += 1;
         }
+        // Where several vertices stand in one point the result touches itself: all of them stay.
+        let mut standing: FxHashMap<u32, u32> = FxHashMap::default();
+        for half in boundary.outer().filter(|&h| self.vertex[h as usize] == h) {
+            *standing.entry(boundary.origin[half as usize]).or_default() += 1;
+        }
+        let alone = |half: u32| standing[&boundary.origin[half as usize]] == 1;
         let mut dropped = vec![false; boundary.twin.len()];
         let straight = Straight { outline: self, boundary, complex, space };
         for half in boundary.outer() {
             let vertex = self.vertex[half as usize];
-            if vertex == half && leaving[&vertex] == 2 && straight.holds(half) {
+            if vertex == half && leaving[&vertex] == 2 && alone(half) && straight.holds(half) {
                 dropped[vertex as usize] = true;
             }
         }

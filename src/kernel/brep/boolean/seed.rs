@@ -147,15 +147,28 @@ fn by_turn(p: &[Wide<4>; 3], q: &[Wide<4>; 3]) -> Ordering {
     0.cmp(&turn).then(0.cmp(&climb))
 }
 
-/// The place just beyond the first point along an edge of a facet of the component.
+/// The place just beyond the first point, inside a facet of the component. Nothing else of another
+/// component is there: facets that cross are of one component. A leaf may touch itself without its
+/// parts being linked, but hardly along a direction as odd as this one.
 fn beyond(complex: &Complex, point: u32, half: u32, facets: &Facets, space: &Space) -> Beyond {
     let at = |p: u32| space.lattice_point(p).expect("a corner is a lattice point");
     let cover = complex.cover(complex.halves[half as usize].cell);
-    // What reaches a first point has a corner there.
-    let corners = cover.iter().flat_map(|&(facet, _)| facets.edges(facet));
-    let along = corners.filter(|edge| edge.0 == point).map(|edge| minus(at(edge.1), at(point)));
-    Beyond { point: at(point), along: along.into_iter().next().unwrap_or([0; 3]) }
+    let mut along = [0; 3];
+    // What reaches a first point has a convex corner there.
+    for (a, b) in cover.iter().take(1).flat_map(|&(facet, _)| facets.edges(facet)) {
+        let (far, weight) = match (a == point, b == point) {
+            (true, _) => (b, ODD[0]),
+            (_, true) => (a, ODD[1]),
+            _ => continue,
+        };
+        let arm = minus(at(far), at(point));
+        along = std::array::from_fn(|i| along[i] + weight * arm[i]);
+    }
+    Beyond { point: at(point), along }
 }
+
+/// The shares of two edges in a direction between them.
+const ODD: [i64; 2] = [618_034, 1_414_213];
 
 fn shells(complex: &Complex, of_cell: &[u32], facets: &Facets) -> Vec<Shell> {
     let mut owned: Vec<(u32, u32, u32)> = vec![];

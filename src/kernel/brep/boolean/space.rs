@@ -68,6 +68,11 @@ impl Space {
         &self.planes[plane as usize].plane
     }
 
+    /// The number of points so far.
+    pub fn point_count(&self) -> usize {
+        self.points.len()
+    }
+
     /// The number of a lattice point.
     pub fn add_lattice_point(&mut self, at: Int3) -> u32 {
         let points = &mut self.points;
