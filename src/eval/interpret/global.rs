@@ -43,9 +43,13 @@ impl Evaluator<'_> {
         self.forcing.pop();
         let cell = match &result {
             Ok(value) => Cell::Done(value.clone()),
-            // What `check` skips for want of geometry is not wrong: it may be asked for again.
-            Err(failure) if self.dry && failure.diagnostic().is_none() => Cell::Todo,
-            Err(failure) => Cell::Failed(failure.clone()),
+            Err(failure) => {
+                // What `check` skips for want of geometry is not wrong: it is asked for again later.
+                if self.dry && failure.diagnostic().is_none() {
+                    self.skipped = true;
+                }
+                Cell::Failed(failure.clone())
+            }
         };
         self.set_cell(instance, number, cell);
         result
@@ -222,7 +226,10 @@ impl Evaluator<'_> {
         self.instance_index.entry(fingerprint(path, &given)).or_default().push(id);
         self.instances.push(Instance::new(unit, given));
         match self.admit(id) {
-            Ok(()) => Ok(id),
+            Ok(()) => {
+                self.instances[id.0 as usize].proved = !self.dry;
+                Ok(id)
+            }
             Err(failure) => {
                 self.instances[id.0 as usize].refused = Some(failure.clone());
                 Err(failure)
@@ -281,6 +288,7 @@ impl Evaluator<'_> {
         for assert in &unit.asserts {
             let checked = self.in_frame(id, unit.frame, |this, frame| this.assert(frame, assert));
             if self.dry && matches!(&checked, Err(failure) if failure.diagnostic().is_none()) {
+                self.skipped = true;
                 continue;
             }
             self.keep_first(&mut result, checked);

@@ -88,6 +88,7 @@ fn unknown_names() {
         "a = cylnder(1, 2)",
         &["unknown-name: unknown name `cylnder` @cylnder@", "did you mean `cylinder`?"],
     );
+    refuses("a = box(1, 1, 1).translate([1, 2, 3])", &["here this is `move`"]);
     refuses("width = 3\na = widht + 1", &["did you mean `width`?"]);
     refuses("a = box(1, 2, 3).filet(2)", &["unknown name `filet` @filet@"]);
     refuses("view v = box(1, 2, 3).view(from = 1)", &["unknown name `view`"]);
