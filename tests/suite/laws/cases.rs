@@ -214,3 +214,24 @@ fn a_box_that_stands_on_its_edge_is_a_leaf_again() {
     let both = solid(&less(vec![once, cut]));
     assert!((volume(&both) - (13.0 - 0.75 - 0.375)).abs() < 1e-12);
 }
+
+#[test]
+fn the_same_tree_gives_the_same_mesh() {
+    let rod = leaf(cylinder([2.0, 2.0], 1.3, -1.0, 3.0, 17));
+    let tree = less(vec![block([0.0; 3], [4.0, 4.0, 2.0]), turned([5.0, 0.0, 0.0], rod)]);
+    let (once, twice) = (solid(&tree), solid(&tree));
+    assert_eq!(once, twice);
+    assert!(!once.is_empty());
+}
+
+#[test]
+fn faces_keep_their_origin() {
+    let rod = leaf(cylinder([2.0, 2.0], 1.0, -1.0, 3.0, 16));
+    let drilled = solid(&moved([5.0, 0.0, 0.0], less(vec![block([0.0; 3], [4.0, 4.0, 2.0]), rod])));
+    let on_rod = |f: &katachi::geom::FaceRef<'_>| match f.origin().surface {
+        Surface::Cylinder { point, radius, .. } => radius == 1.0 && point.x == 7.0,
+        _ => false,
+    };
+    assert_eq!(drilled.mesh().faces().filter(on_rod).count(), 16);
+    assert_eq!(drilled.mesh().face_count(), 16 + 6);
+}

@@ -72,7 +72,7 @@ fn the_laws_hold() {
         volumes_add_up(seed, (&a, &b), &there);
         rotation_changes_nothing(seed, &difference);
         points_inside_are_those_the_tree_holds(seed, &union, &there.solid);
-        if seed % 4 == 0 {
+        if seed.is_multiple_of(4) {
             results_are_leaves_again(seed, (&a, &b), &difference);
         }
         let none = result(&Tree::Difference(vec![a.clone(), a]));
