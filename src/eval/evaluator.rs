@@ -128,6 +128,8 @@ pub struct Evaluator<'h> {
     pub(super) test: Option<Running>,
     /// Set while `check` runs: geometry is not asked.
     pub(super) dry: bool,
+    /// Set when `check` met something it could not evaluate without geometry.
+    pub(super) skipped: bool,
 }
 
 impl<'h> Evaluator<'h> {
@@ -152,6 +154,7 @@ impl<'h> Evaluator<'h> {
             messages: Messages::default(),
             test: None,
             dry: false,
+            skipped: false,
         }
     }
 

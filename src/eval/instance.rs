@@ -40,12 +40,14 @@ pub struct Instance {
     pub given: Vec<Given>,
     /// Set when a parameter or a top-level assert refuses the instance.
     pub refused: Option<Failure>,
+    /// Whether its asserts were checked with geometry.
+    pub proved: bool,
 }
 
 impl Instance {
     pub fn new(unit: Arc<Unit>, given: Vec<Given>) -> Instance {
         let cells = vec![Cell::Todo; unit.globals.len()];
-        Instance { unit, cells, given, refused: None }
+        Instance { unit, cells, given, refused: None, proved: false }
     }
 
     pub fn given(&self, name: &str) -> Option<&Given> {

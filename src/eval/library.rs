@@ -60,12 +60,18 @@ impl Declaration {
     /// The signature as written: `fn box(x: Length, y: Length, z: Length) -> Solid`, or the name of
     /// a constant.
     pub fn signature(&self) -> &'static str {
-        let end = self
-            .text
-            .find(" = builtin")
-            .or_else(|| self.text.find(" = ").filter(|_| !self.text.starts_with("fn")));
-        let line = self.text.lines().next().unwrap_or("");
-        self.text.get(..end.unwrap_or(line.len())).unwrap_or(line).trim_end_matches(" {")
+        if !self.text.starts_with("fn ") {
+            return self.name;
+        }
+        let mut depth = 0;
+        let parameters_end = self.text.char_indices().find_map(|(at, c)| {
+            depth += i32::from(c == '(') - i32::from(c == ')');
+            (c == ')' && depth == 0).then_some(at + 1)
+        });
+        let end = parameters_end.unwrap_or(self.text.len());
+        let rest = &self.text[end..];
+        let body = rest.find(" = ").into_iter().chain(rest.find(" {")).min();
+        &self.text[..end + body.unwrap_or(rest.len())]
     }
 
     /// The examples of the documentation: the text between lines of three back quotes.

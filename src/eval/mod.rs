@@ -26,7 +26,7 @@ pub mod value;
 pub use dimension::Dimension;
 pub use evaluator::{Evaluator, Host, Limits, Loaded, Override};
 pub use instance::InstanceId;
-pub use nearest::nearest;
+pub use nearest::{here_called, nearest};
 pub use outputs::{Domain, ExportInfo, OutputInfo, ParamInfo};
 pub use testing::{TestInfo, TestOutcome, Write};
 pub use value::Value;

@@ -20,6 +20,36 @@ pub fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Vec
     close.take(3).map(|(_, candidate)| candidate).collect()
 }
 
+/// What other modelling languages call it, and its name here.
+const ELSEWHERE: &[(&str, &str)] = &[
+    ("append", "++"),
+    ("concat", "++"),
+    ("cube", "box"),
+    ("cuboid", "box"),
+    ("linear_extrude", "extrude"),
+    ("multmatrix", "transform"),
+    ("null", "NONE"),
+    ("pi", "PI"),
+    ("pow", "^"),
+    ("rands", "rand"),
+    ("reduce", "fold"),
+    ("rotate_extrude", "revolve"),
+    ("square", "rect"),
+    ("str", "string"),
+    ("subtract", "difference"),
+    ("translate", "move"),
+    ("undef", "NONE"),
+];
+
+/// The name here of what is known by another name elsewhere.
+///
+/// ```
+/// assert_eq!(katachi::eval::here_called("translate"), Some("move"));
+/// ```
+pub fn here_called(name: &str) -> Option<&'static str> {
+    ELSEWHERE.iter().find(|(elsewhere, _)| *elsewhere == name).map(|(_, here)| *here)
+}
+
 /// `did you mean ...?` when something is near.
 pub fn did_you_mean<'a>(
     name: &str,

@@ -377,35 +377,53 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Evaluates everything that needs no geometry, so that its errors are told.
+    /// Evaluates everything that needs no geometry, so that its errors are told: also names that no
+    /// output uses. What asks for geometry is skipped.
     pub fn check(&mut self, instance: InstanceId) {
+        self.steps_taken = 0;
         self.dry = true;
-        let unit = self.unit_of(instance);
         self.tolerance(instance);
         if self.admitted(instance).is_ok() {
-            for (number, global) in unit.globals.iter().enumerate() {
-                if global.kind == GlobalKind::Anonymous {
-                    continue;
-                }
-                if let Err(failure) = self.global(instance, number as u32, global.name.span) {
-                    self.report(&failure);
-                }
-            }
-            for param in &unit.params {
-                if let Some(code) = param.condition
-                    && let Err(failure) =
-                        self.in_frame(instance, param.frame, |this, frame| this.truth(frame, code))
-                {
-                    self.report(&failure);
-                }
-            }
+            self.check_globals(instance);
             self.outputs(instance);
             self.exports(instance);
         }
         self.dry = false;
-        debug_assert!(
-            !self.instances.iter().any(|i| i.cells.iter().any(|c| matches!(c, Cell::Busy)))
-        );
+        if std::mem::take(&mut self.skipped) {
+            self.forget();
+        }
+    }
+
+    /// Makes the next request evaluate anew what `check` saw without geometry: instances whose
+    /// asserts it skipped, and all values, which may hold such instances.
+    fn forget(&mut self) {
+        for instance in &mut self.instances {
+            instance.cells.fill(Cell::Todo);
+        }
+        let instances = &self.instances;
+        for numbers in self.instance_index.values_mut() {
+            numbers.retain(|id| instances[id.0 as usize].proved);
+        }
+    }
+
+    fn check_globals(&mut self, instance: InstanceId) {
+        let unit = self.unit_of(instance);
+        for (number, global) in unit.globals.iter().enumerate() {
+            if global.kind == GlobalKind::Anonymous {
+                continue;
+            }
+            if let Err(failure) = self.global(instance, number as u32, global.name.span) {
+                self.report(&failure);
+            }
+        }
+        for param in &unit.params {
+            let Some(code) = param.condition else { continue };
+            let checked =
+                self.in_frame(instance, param.frame, |this, frame| this.truth(frame, code));
+            if let Err(failure) = checked {
+                self.report(&failure);
+            }
+        }
     }
 }
 

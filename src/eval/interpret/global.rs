@@ -43,9 +43,13 @@ impl Evaluator<'_> {
         self.forcing.pop();
         let cell = match &result {
             Ok(value) => Cell::Done(value.clone()),
-            // What `check` skips for want of geometry is not wrong: it may be asked for again.
-            Err(failure) if self.dry && failure.diagnostic().is_none() => Cell::Todo,
-            Err(failure) => Cell::Failed(failure.clone()),
+            Err(failure) => {
+                // What `check` skips for want of geometry is not wrong: it is asked for again later.
+                if self.dry && failure.diagnostic().is_none() {
+                    self.skipped = true;
+                }
+                Cell::Failed(failure.clone())
+            }
         };
         self.set_cell(instance, number, cell);
         result
@@ -227,7 +231,10 @@ impl Evaluator<'_> {
             self.host.settle_tolerance(mm);
         }
         match self.admit(id) {
-            Ok(()) => Ok(id),
+            Ok(()) => {
+                self.instances[id.0 as usize].proved = !self.dry;
+                Ok(id)
+            }
             Err(failure) => {
                 self.instances[id.0 as usize].refused = Some(failure.clone());
                 Err(failure)
@@ -286,6 +293,7 @@ impl Evaluator<'_> {
         for assert in &unit.asserts {
             let checked = self.in_frame(id, unit.frame, |this, frame| this.assert(frame, assert));
             if self.dry && matches!(&checked, Err(failure) if failure.diagnostic().is_none()) {
+                self.skipped = true;
                 continue;
             }
             self.keep_first(&mut result, checked);

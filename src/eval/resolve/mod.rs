@@ -13,7 +13,7 @@ use scope::{Found, Scope};
 
 use super::{
     library::Index,
-    nearest::did_you_mean,
+    nearest::{did_you_mean, here_called},
     types::Type,
     unit::{Capture, Code, CodeId, Unit},
     value::Value,
@@ -166,6 +166,9 @@ impl Resolver<'_> {
 pub fn unknown_name<'a>(name: &ast::Name, known: impl Iterator<Item = &'a str>) -> Diagnostic {
     let message = format!("unknown name `{}`", name.text);
     let found = Diagnostic::error(base::Code::UnknownName, message).label(name.span, "not found");
+    if let Some(here) = here_called(&name.text) {
+        return found.help(format!("here this is `{here}`"));
+    }
     match did_you_mean(&name.text, known) {
         Some((help, first)) => found.help(help).fix(name.span, first),
         None => found,

@@ -37,3 +37,18 @@ test "no M7" fails "there is no M7" { clearance(7mm) }
 "#,
     );
 }
+
+#[test]
+fn signatures_read_as_declared() {
+    let signature = |name: &str| {
+        let mut found = Index::get().declarations().filter(|d| d.name == name);
+        found.next().map(|declaration| declaration.signature())
+    };
+    assert_eq!(signature("box"), Some("fn box(x: Length, y: Length, z: Length) -> Solid"));
+    assert_eq!(signature("row"), Some("fn row(shape: Shape, n: Count, step: Point) -> Shape"));
+    assert_eq!(
+        signature("grid_of"),
+        Some("fn grid_of(shape: Shape, n: List[Count], step: Point) -> Shape")
+    );
+    assert_eq!(signature("PI"), Some("PI"));
+}

@@ -88,6 +88,7 @@ fn unknown_names() {
         "a = cylnder(1, 2)",
         &["unknown-name: unknown name `cylnder` @cylnder@", "did you mean `cylinder`?"],
     );
+    refuses("a = box(1, 1, 1).translate([1, 2, 3])", &["here this is `move`"]);
     refuses("width = 3\na = widht + 1", &["did you mean `width`?"]);
     refuses("a = box(1, 2, 3).filet(2)", &["unknown name `filet` @filet@"]);
     refuses("view v = box(1, 2, 3).view(from = 1)", &["unknown name `view`"]);
@@ -391,4 +392,19 @@ fn files_that_use_files() {
         "{}",
         cycle.words()
     );
+}
+
+#[test]
+fn errors_inside_the_library_stand_at_the_call() {
+    for (call, words) in [
+        ("box(1, 1, 1).grid_of([2, 2, 2], [3, 3])", "`n` has 3 numbers and `step` has 2"),
+        ("box(1, 1, 1).grid_of([2], [3, 3])", "a grid needs 2 or 3"),
+        ("box(1, 1, 1).attach(box(2, 2, 2), side = NONE)", "a side is LEFT, RIGHT"),
+        ("rect(1, 1).revolve(sides = 2)", "`sides` must be at least 3, got 2"),
+        ("prism(rect(1, 1), 0)", "`h` must be greater than 0, got 0mm"),
+        ("map([1, 2], 5)", "`f` of `map` needs a function, got `5`"),
+    ] {
+        let marked = if call.starts_with("map") { "@5@".into() } else { format!("@{call}@") };
+        refuses(&format!("part p = {call}"), &[words, &marked]);
+    }
 }

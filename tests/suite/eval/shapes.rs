@@ -201,3 +201,32 @@ fn tests_that_should_fail() {
     holds("test \"t\" fails \"greater than 0\" { box(0, 1, 1) }");
     refuses("test \"t\" { assert 1 == 2, \"never\" }", &["assertion-failed: never"]);
 }
+
+#[test]
+fn check_asks_no_geometry_and_leaves_what_it_skips() {
+    let main = "b = box(1, 2, 3)\nv = volume(b)\nw = v / 1mm^2 + 1mm\npart p = box(w, 1, 1)\nq = 1 / 0\nassert v > 0mm^3";
+    let files = [("main.kata", main)];
+    let bench = Bench::new(&files);
+    let mut evaluator = Evaluator::new(&bench, Limits::default());
+    let id = evaluator.open("main.kata", &[]).expect("it opens");
+    evaluator.check(id);
+    let told = evaluator.take_diagnostics();
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert_eq!(told[0].code, Code::Arithmetic);
+    let shape = evaluator.shape_of(id, "p").expect("it is evaluated after the check");
+    assert!(matches!(evaluator.graph().node(shape), Node::Box { max, .. } if max.x == 3.5));
+}
+
+#[test]
+fn asserts_that_check_skips_are_made_up_for() {
+    let main = "use \"h.kata\" as h\npart p = h.leaf";
+    let leaf = "part leaf = box(1, 2, 3)\nassert volume(leaf) > 7mm^3, \"too small\"";
+    let files = [("main.kata", main), ("h.kata", leaf)];
+    let bench = Bench::new(&files);
+    let mut evaluator = Evaluator::new(&bench, Limits::default());
+    let id = evaluator.open("main.kata", &[]).expect("it opens");
+    evaluator.check(id);
+    assert!(evaluator.take_diagnostics().is_empty());
+    assert!(evaluator.shape_of(id, "p").is_err());
+    assert_eq!(evaluator.take_diagnostics()[0].message, "too small");
+}
