@@ -1,8 +1,12 @@
 //! Hard cases by name: touching, coplanar and nested operands, unrotated and rotated.
 
-use katachi::kernel::brep::{
-    Polyhedron,
-    boolean::{Tree, evaluate},
+use glam::DVec2;
+use katachi::{
+    geom::Surface,
+    kernel::brep::{
+        Polyhedron,
+        boolean::{Tree, evaluate},
+    },
 };
 
 use super::solids::*;
@@ -181,4 +185,53 @@ fn new_corners_stay_on_faces_whose_place_is_no_decimal() {
     let after = solid(&less(vec![a, cut]));
     let on = |x: f64| after.mesh().points.iter().filter(|p| p.x == x).count();
     assert_eq!((on(third), on(1.0), on(10.0 * third)), (4, 4, 6));
+}
+
+#[test]
+fn a_result_that_touches_itself_along_part_of_an_edge_is_a_leaf_again() {
+    let parts = vec![block([0.0; 3], [1.0, 1.0, 3.0]), block([1.0, 1.0, 1.0], [2.0, 2.0, 5.0])];
+    let once = solid(&union(parts));
+    let far = block([9.0; 3], [10.0; 3]);
+    assert_eq!(volume(&solid(&union(vec![leaf(once.clone())]))), 7.0);
+    assert_eq!(volume(&solid(&union(vec![leaf(once.clone()), far]))), 8.0);
+    let cut = block([-1.0, 0.5, 2.0], [3.0, 1.5, 4.0]);
+    assert_eq!(volume(&solid(&less(vec![leaf(once), cut]))), 7.0 - 0.5 - 1.0);
+}
+
+#[test]
+fn a_box_that_stands_on_its_edge_is_a_leaf_again() {
+    let prism = leaf(prism(
+        &[DVec2::new(2.0, 1.0), DVec2::new(3.0, 2.0), DVec2::new(1.0, 2.0)],
+        1.0,
+        2.0,
+        Surface::Plane,
+    ));
+    let floor = block([0.0; 3], [4.0, 1.0, 3.0]);
+    let once = union(vec![floor, prism]);
+    check(once.clone(), 13.0, 20, 4);
+    let once = leaf(solid(&once));
+    let cut = block([1.5, 0.5, -1.0], [2.0, 3.0, 5.0]);
+    let both = solid(&less(vec![once, cut]));
+    assert!((volume(&both) - (13.0 - 0.75 - 0.375)).abs() < 1e-12);
+}
+
+#[test]
+fn the_same_tree_gives_the_same_mesh() {
+    let rod = leaf(cylinder([2.0, 2.0], 1.3, -1.0, 3.0, 17));
+    let tree = less(vec![block([0.0; 3], [4.0, 4.0, 2.0]), turned([5.0, 0.0, 0.0], rod)]);
+    let (once, twice) = (solid(&tree), solid(&tree));
+    assert_eq!(once, twice);
+    assert!(!once.is_empty());
+}
+
+#[test]
+fn faces_keep_their_origin() {
+    let rod = leaf(cylinder([2.0, 2.0], 1.0, -1.0, 3.0, 16));
+    let drilled = solid(&moved([5.0, 0.0, 0.0], less(vec![block([0.0; 3], [4.0, 4.0, 2.0]), rod])));
+    let on_rod = |f: &katachi::geom::FaceRef<'_>| match f.origin().surface {
+        Surface::Cylinder { point, radius, .. } => radius == 1.0 && point.x == 7.0,
+        _ => false,
+    };
+    assert_eq!(drilled.mesh().faces().filter(on_rod).count(), 16);
+    assert_eq!(drilled.mesh().face_count(), 16 + 6);
 }

@@ -38,7 +38,7 @@ pub struct Style {
 
 /// The style of a tree: half are coarse, a third turned.
 pub fn style(seed: u64) -> Style {
-    Style { coarse: seed % 2 == 0, turned: seed % 3 == 0 }
+    Style { coarse: seed.is_multiple_of(2), turned: seed.is_multiple_of(3) }
 }
 
 /// A random tree of at most so many levels.

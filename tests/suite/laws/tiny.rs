@@ -14,7 +14,7 @@ fn beside(seed: u64, scale: f64) -> Tree {
     let place = [(); 3].map(|()| random.unit() * 4.0);
     let large = tree(&mut random, &style, 1);
     let parts = vec![large, moved(place, small.clone()), small];
-    if seed % 2 == 0 { Tree::Union(parts) } else { Tree::Difference(parts) }
+    if seed.is_multiple_of(2) { Tree::Union(parts) } else { Tree::Difference(parts) }
 }
 
 #[test]

@@ -57,10 +57,10 @@ impl Assembly<'_> {
         let near = self.space.near(point);
         let mut place = self.lattice.place(near);
         for axis in 0..3 {
-            if let Some(&level) = levels.get(&(axis, near[axis] as i64)) {
-                if near[axis].fract() == 0.0 {
-                    place[axis] = level;
-                }
+            if near[axis].fract() == 0.0
+                && let Some(&level) = levels.get(&(axis, near[axis] as i64))
+            {
+                place[axis] = level;
             }
         }
         self.plan.frame.point(place)

@@ -40,8 +40,11 @@ impl Boundary {
         let keys: Vec<Option<Key>> =
             cells.map(|c| up[c as usize].map(|up| labels.key(complex, c, up))).collect();
         let (origin, next) = directed(complex, &up);
-        let (twin, crowded) = twins(complex, sides, &up);
-        let polygon = polygons(complex, &twin, &crowded, &keys);
+        let (mut twin, crowded) = twins(complex, sides, &up);
+        let polygon = polygons(complex, &twin, &keys);
+        for around in &crowded {
+            link_crowded(around, complex, sides, &polygon, &mut twin);
+        }
         Boundary { origin, next, twin, polygon, keys }
     }
 
@@ -77,10 +80,11 @@ fn directed(complex: &Complex, up: &[Option<bool>]) -> (Vec<u32>, Vec<u32>) {
     (origin, next)
 }
 
-/// The links, and whether more than two half-edges of the result run along each edge.
-fn twins(complex: &Complex, sides: &Sides, up: &[Option<bool>]) -> (Vec<u32>, Vec<bool>) {
+/// The links along edges with two half-edges of the result, and the half-edges along all others, in
+/// radial order.
+fn twins(complex: &Complex, sides: &Sides, up: &[Option<bool>]) -> (Vec<u32>, Vec<Vec<u32>>) {
     let mut twin = vec![NONE; complex.halves.len()];
-    let mut crowded = vec![false; complex.edge_count()];
+    let mut crowded = vec![];
     let mut radial = sides.radial.iter().peekable();
     let mut kept = vec![];
     for edge in 0..complex.edge_count() {
@@ -88,26 +92,41 @@ fn twins(complex: &Complex, sides: &Sides, up: &[Option<bool>]) -> (Vec<u32>, Ve
         let around = sorted.map_or(complex.around(edge), |r| &r.1).iter().copied();
         kept.clear();
         kept.extend(around.filter(|&h| up[complex.halves[h as usize].cell as usize].is_some()));
-        crowded[edge] = kept.len() > 2;
-        for (i, &half) in kept.iter().enumerate() {
-            if sides.inside[following_side(complex, half) as usize] {
-                let next = kept[(i + 1) % kept.len()];
-                twin[half as usize] = next;
-                twin[next as usize] = half;
-            }
+        match kept[..] {
+            [] => {}
+            [a, b] => (twin[a as usize], twin[b as usize]) = (b, a),
+            _ => crowded.push(kept.clone()),
         }
     }
     (twin, crowded)
 }
 
+/// Links the half-edges along an edge where the result touches itself: those that bound the same
+/// wedge of the inside, unless a polygon would be slit by that; then those that bound the same wedge
+/// of the outside.
+fn link_crowded(
+    around: &[u32],
+    complex: &Complex,
+    sides: &Sides,
+    polygon: &[u32],
+    twin: &mut [u32],
+) {
+    let pairs = || around.iter().zip(around.iter().cycle().skip(1));
+    let before_inside = |half: u32| sides.inside[following_side(complex, half) as usize];
+    let slit =
+        pairs().any(|(&a, &b)| !before_inside(a) && polygon[a as usize] == polygon[b as usize]);
+    for (&a, &b) in pairs().filter(|p| before_inside(*p.0) != slit) {
+        (twin[a as usize], twin[b as usize]) = (b, a);
+    }
+}
+
 /// Joins equal cells across edges where nothing else is. Where the result touches itself an edge
 /// stays, so that all that touches there has it.
-fn polygons(complex: &Complex, twin: &[u32], crowded: &[bool], keys: &[Option<Key>]) -> Vec<u32> {
+fn polygons(complex: &Complex, twin: &[u32], keys: &[Option<Key>]) -> Vec<u32> {
     let cell = |half: u32| complex.halves[half as usize].cell;
     let mut sets = Sets::new(complex.cell_count());
     for (half, &back) in (0u32..).zip(twin) {
-        let alone = !crowded[complex.halves[half as usize].edge as usize];
-        if back != NONE && alone && keys[cell(half) as usize] == keys[cell(back) as usize] {
+        if back != NONE && keys[cell(half) as usize] == keys[cell(back) as usize] {
             sets.join(cell(half), cell(back));
         }
     }

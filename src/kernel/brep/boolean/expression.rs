@@ -87,7 +87,7 @@ impl State {
         };
         let node = self.add_node(parent, first, rule, parts.len());
         for (i, part) in parts.iter().enumerate() {
-            self.add(part, node, i == 0);
+            super::frame::deeper(|| self.add(part, node, i == 0));
         }
     }
 

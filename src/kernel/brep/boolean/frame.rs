@@ -63,7 +63,7 @@ fn common_linear(tree: &Tree) -> DMat3 {
 }
 
 fn tally(tree: &Tree, placement: &Placement, found: &mut Vec<(DMat3, usize)>) {
-    match tree {
+    deeper(|| match tree {
         Tree::Leaf(_) => match found.iter_mut().find(|f| f.0 == placement.linear()) {
             Some(entry) => entry.1 += 1,
             None => found.push((placement.linear(), 1)),
@@ -72,7 +72,14 @@ fn tally(tree: &Tree, placement: &Placement, found: &mut Vec<(DMat3, usize)>) {
         Tree::Union(parts) | Tree::Difference(parts) | Tree::Intersection(parts) => {
             parts.iter().for_each(|part| tally(part, placement, found));
         }
-    }
+    });
+}
+
+/// Calls a step of a recursion with enough stack for it, however deep the tree.
+pub(super) fn deeper<T>(step: impl FnOnce() -> T) -> T {
+    const RESERVE: usize = 128 << 10;
+    const SEGMENT: usize = 4 << 20;
+    stacker::maybe_grow(RESERVE, SEGMENT, step)
 }
 
 /// The walk that collects leaves.
@@ -103,9 +110,9 @@ impl Walk {
     fn part(&mut self, tree: &Tree, at: &Placement) -> Result<Expression, BooleanError> {
         let whole = matches!(tree, Tree::Leaf(_) | Tree::Placed(..));
         if whole || keeps_lattice(&self.local(at)) {
-            return self.operation(tree, at);
+            return deeper(|| self.operation(tree, at));
         }
-        let evaluated = evaluate_operation(tree, &Placement::IDENTITY)?;
+        let evaluated = deeper(|| evaluate_operation(tree, &Placement::IDENTITY))?;
         self.snap = self.snap.max(evaluated.snap);
         Ok(self.leaf(Arc::new(evaluated.solid), at))
     }
@@ -162,6 +169,18 @@ mod tests {
         assert!(is_permutation(&DMat3::from_diagonal(DVec3::new(1.0, -1.0, 1.0))));
         assert!(!is_permutation(&DMat3::from_diagonal(DVec3::new(1.0, 2.0, 1.0))));
         assert!(!is_permutation(&DMat3::from_cols(DVec3::X, DVec3::X, DVec3::Z)));
+    }
+
+    #[test]
+    fn a_deep_tree_is_no_danger() {
+        let mut tree = Tree::Leaf(Arc::new(Polyhedron::empty()));
+        for _ in 0..10_000 {
+            let leaf = Tree::Leaf(Arc::new(Polyhedron::empty()));
+            tree = Tree::Difference(vec![tree, leaf]);
+        }
+        let plan = plan(&tree, &Placement::IDENTITY).expect("a plan");
+        assert_eq!(plan.leaves.len(), 10_001);
+        super::super::expression::State::new(&plan.expression, plan.leaves.len());
     }
 
     #[test]

@@ -112,6 +112,20 @@ pub const CORNERS: usize = 1 << 28;
 /// there. Faces in one plane with equal tags and colours are merged into polygons with holes. Faces
 /// keep their origin. Fails only for coordinates that are not finite and for operands that are not
 /// closed.
+///
+/// ```
+/// use std::sync::Arc;
+/// use glam::dvec3;
+/// use katachi::kernel::brep::{boolean::{Tree, evaluate}, measure::volume, primitive::cuboid};
+/// let cube = |low: f64, high: f64| {
+///     let corner = |c: f64| dvec3(c, c, c);
+///     Tree::Leaf(Arc::new(cuboid(corner(low), corner(high))))
+/// };
+/// let notched = evaluate(&Tree::Difference(vec![cube(0.0, 2.0), cube(1.0, 3.0)]))?;
+/// assert_eq!(volume(&notched.solid), 7.0);
+/// assert_eq!(notched.solid.mesh().triangle_count(), 24);
+/// # Ok::<(), katachi::kernel::brep::boolean::BooleanError>(())
+/// ```
 pub fn evaluate(tree: &Tree) -> Result<Evaluated, BooleanError> {
     let (mut placement, mut inner) = (Placement::IDENTITY, tree);
     while let Tree::Placed(outer, child) = inner {
