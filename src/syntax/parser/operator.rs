@@ -49,34 +49,30 @@ struct Infix {
 }
 
 const INFIX: [Infix; 7] = {
+    const OR: TokenSet = TokenSet::of(&[Token::Or]);
+    const AND: TokenSet = TokenSet::of(&[Token::And]);
+    const DOTS: TokenSet = TokenSet::of(&[Token::DotDot, Token::DotDotLess]);
+    const SUMS: TokenSet = TokenSet::of(&[Token::Plus, Token::Minus, Token::Join]);
+    const PRODUCTS: TokenSet =
+        TokenSet::of(&[Token::Star, Token::Slash, Token::Percent, Token::Ampersand]);
+    const CARET: TokenSet = TokenSet::of(&[Token::Caret]);
     const fn infix(
         level: Level,
         production: Production,
-        operators: &[Token],
+        operators: TokenSet,
         right: Level,
         next: Level,
     ) -> Infix {
-        Infix { level, production, operators: TokenSet::of(operators), right, next }
+        Infix { level, production, operators, right, next }
     }
-    const COMPARISONS: [Token; 6] = [
-        Token::Equal,
-        Token::NotEqual,
-        Token::Less,
-        Token::LessEqual,
-        Token::Greater,
-        Token::GreaterEqual,
-    ];
-    const PRODUCTS: [Token; 4] = [Token::Star, Token::Slash, Token::Percent, Token::Ampersand];
-    const SUMS: [Token; 3] = [Token::Plus, Token::Minus, Token::Join];
-    const DOTS: [Token; 2] = [Token::DotDot, Token::DotDotLess];
     [
-        infix(Level::Or, Production::Or, &[Token::Or], Level::And, Level::Or),
-        infix(Level::And, Production::And, &[Token::And], Level::Not, Level::And),
-        infix(Level::Cmp, Production::Cmp, &COMPARISONS, Level::Range, Level::Not),
-        infix(Level::Range, Production::Range, &DOTS, Level::Sum, Level::Cmp),
-        infix(Level::Sum, Production::Sum, &SUMS, Level::Prod, Level::Sum),
-        infix(Level::Prod, Production::Prod, &PRODUCTS, Level::Unary, Level::Prod),
-        infix(Level::Power, Production::Power, &[Token::Caret], Level::Unary, Level::Unary),
+        infix(Level::Or, Production::Or, OR, Level::And, Level::Or),
+        infix(Level::And, Production::And, AND, Level::Not, Level::And),
+        infix(Level::Cmp, Production::Cmp, TokenSet::COMPARISONS, Level::Range, Level::Not),
+        infix(Level::Range, Production::Range, DOTS, Level::Sum, Level::Cmp),
+        infix(Level::Sum, Production::Sum, SUMS, Level::Prod, Level::Sum),
+        infix(Level::Prod, Production::Prod, PRODUCTS, Level::Unary, Level::Prod),
+        infix(Level::Power, Production::Power, CARET, Level::Unary, Level::Unary),
     ]
 };
 
