@@ -296,8 +296,8 @@ impl Unit {
     }
 }
 
-/// A file's name without folder and ending.
+/// A file's name without folder and ending; that of `<stdin>` is `stdin`.
 pub fn stem(path: &str) -> &str {
     let name = path.rsplit('/').next().unwrap_or(path);
-    name.strip_suffix(".kata").unwrap_or(name)
+    name.strip_suffix(".kata").unwrap_or(name).trim_matches(['<', '>'])
 }

@@ -42,8 +42,9 @@ use crate::{
     shape::{Kind, Measures, Node, ShapeGraph, ShapeId},
 };
 
-/// Triangles that one solid, or all operands of one set operation together, may have.
-pub const MOST_TRIANGLES: usize = 50_000_000;
+/// Triangles that one solid, or all operands of one set operation together, may have: at most about
+/// 3 GB while they are made.
+pub const MOST_TRIANGLES: usize = 20_000_000;
 
 /// Makes shapes of one graph and keeps them.
 pub struct Realizer<'w> {
