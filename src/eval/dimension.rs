@@ -4,6 +4,9 @@ use std::fmt;
 
 use crate::syntax::ast::UnitName;
 
+/// How far an exponent may be from a whole number and still count as it: 1/3 is not exact in binary.
+const WHOLE: f64 = 1e-12;
+
 /// length^i · angle^j. A bare number has both exponents 0.
 ///
 /// ```
@@ -51,6 +54,17 @@ impl Dimension {
     /// Of a whole power.
     pub fn power(self, exponent: i32) -> Option<Dimension> {
         let raise = |e: i8| i8::try_from(i32::from(e).checked_mul(exponent)?).ok();
+        Some(Dimension { length: raise(self.length)?, angle: raise(self.angle)? })
+    }
+
+    /// Of a power with a fraction; `None` when that leaves an exponent that is not whole.
+    pub fn broken_power(self, exponent: f64) -> Option<Dimension> {
+        let raise = |e: i8| {
+            let product = f64::from(e) * exponent;
+            let whole = product.round();
+            let fits = (product - whole).abs() <= WHOLE && whole.abs() <= f64::from(i8::MAX);
+            fits.then_some(whole as i8)
+        };
         Some(Dimension { length: raise(self.length)?, angle: raise(self.angle)? })
     }
 

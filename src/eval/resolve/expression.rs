@@ -12,7 +12,10 @@ use crate::{
         },
         value::{Value, number_text},
     },
-    syntax::ast::{self, BinaryOp, Expr, ExprKind, UnaryOp},
+    syntax::{
+        ast::{self, BinaryOp, Expr, ExprKind, UnaryOp},
+        number::scaled,
+    },
 };
 
 impl Resolver<'_> {
@@ -75,7 +78,7 @@ impl Resolver<'_> {
             Some(unit) => {
                 let (factor, dimension) = unit_factor(unit.name);
                 let exponent = i32::from(unit.exponent);
-                let number = value * libm::pow(factor, f64::from(exponent));
+                let number = in_base_unit(value, factor, exponent);
                 dimension.power(exponent).map(|dimension| Value::Number(number, dimension))
             }
         };
@@ -230,6 +233,14 @@ impl Resolver<'_> {
         }
         codes.into()
     }
+}
+
+/// A literal in millimetres or degrees: scaled in decimals as often as the unit counts.
+fn in_base_unit(value: f64, factor: f64, exponent: i32) -> f64 {
+    if exponent < 0 {
+        return value / libm::pow(factor, f64::from(-exponent));
+    }
+    (0..exponent).fold(value, |value, _| scaled(value, factor))
 }
 
 /// The size of one of the unit a number is written in: 25.4 for `3in` and `-3in`.
