@@ -178,7 +178,8 @@ fn menger(levels: u32) -> Tree {
     for level in 1..=levels {
         let count = 3u32.pow(level - 1);
         let (cell, w) = (SIDE / f64::from(count), SIDE / f64::from(3 * count));
-        for (i, j) in (0..count).flat_map(|i| (0..count).map(move |j| (f64::from(i), f64::from(j)))) {
+        for (i, j) in (0..count).flat_map(|i| (0..count).map(move |j| (f64::from(i), f64::from(j))))
+        {
             let min = dvec3(i * cell + w, j * cell + w, -1.0);
             let max = dvec3(i * cell + 2.0 * w, j * cell + 2.0 * w, SIDE + 1.0);
             let around = |v: DVec3, turns: usize| (0..turns).fold(v, |v, _| dvec3(v.z, v.x, v.y));
@@ -198,7 +199,7 @@ fn cubes() -> Tree {
 /// Spheres near the origin, added and taken away in turn.
 fn chain() -> Tree {
     let mut random = Random(7);
-    let ball = Arc::new(sphere(5.0, 32));
+    let ball = Arc::new(sphere(5.0, 24));
     let mut next = || placed(&ball, Placement::translation(random.vector() * 6.0));
     let mut tree = next();
     for i in 1..100 {
