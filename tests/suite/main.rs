@@ -5,6 +5,7 @@ mod errors;
 mod eval;
 mod examples;
 mod floors;
+mod golden;
 mod grammar;
 mod laws;
 mod readers;
