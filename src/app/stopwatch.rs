@@ -153,7 +153,7 @@ impl Steps {
 
 fn new_bar() -> ProgressBar {
     let style = ProgressStyle::with_template("{spinner} {wide_bar} {pos}/{len} solids {elapsed}");
-    let bar = ProgressBar::new(0);
+    let bar = ProgressBar::new(0).with_elapsed(PATIENCE);
     style.map(|style| bar.clone().with_style(style)).unwrap_or(bar)
 }
 

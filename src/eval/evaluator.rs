@@ -218,9 +218,8 @@ impl<'h> Evaluator<'h> {
             (Some(ParamKind::Text), Override::Source { text, .. }) if !text.starts_with('"') => {
                 Override::Data(Data::Text(text.clone()))
             }
-            (Some(ParamKind::Number), Override::Data(Data::Text(text))) => {
-                quantity(text).map_or_else(|| given.clone(), |(x, unit)| Override::Quantity(x, unit))
-            }
+            (Some(ParamKind::Number), Override::Data(Data::Text(text))) => quantity(text)
+                .map_or_else(|| given.clone(), |(x, unit)| Override::Quantity(x, unit)),
             _ => given.clone(),
         }
     }

@@ -333,9 +333,10 @@ impl Unit {
             (Some(Type::String), _) => Some(ParamKind::Text),
             (Some(Type::Number(_) | Type::Quantity | Type::Count), _) => Some(ParamKind::Number),
             (None, Some(Code::Text(_) | Code::Constant(Value::Text(_)))) => Some(ParamKind::Text),
-            (None, Some(Code::Constant(Value::Number(..)) | Code::Binary(..) | Code::Negate(_))) => {
-                Some(ParamKind::Number)
-            }
+            (
+                None,
+                Some(Code::Constant(Value::Number(..)) | Code::Binary(..) | Code::Negate(_)),
+            ) => Some(ParamKind::Number),
             _ => None,
         }
     }
@@ -346,7 +347,7 @@ impl Unit {
     }
 }
 
-/// A file's name without folder and ending: `stdin` for `<stdin>`.
+/// A file's name without folder and ending; that of `<stdin>` is `stdin`.
 pub fn stem(path: &str) -> &str {
     let name = path.rsplit('/').next().unwrap_or(path);
     name.strip_suffix(".kata").unwrap_or(name).trim_matches(['<', '>'])

@@ -72,6 +72,17 @@ fn the_model_may_come_from_standard_input() {
 }
 
 #[test]
+fn a_shape_without_a_name_from_standard_input_is_called_stdin() {
+    let folder = folder(&[]);
+    let mut command = katachi(&["build", "-"]);
+    command.current_dir(folder.path()).stdin(Stdio::piped()).stdout(Stdio::piped());
+    let mut child = command.spawn().expect("starts");
+    child.stdin.take().expect("piped").write_all(b"box(1, 2, 3)").expect("read");
+    assert_eq!(child.wait_with_output().expect("ends").status.code(), Some(0));
+    assert_eq!(names(&folder.path().join("out")), ["stdin.stl"]);
+}
+
+#[test]
 fn measures_have_the_keys_that_the_language_names() {
     let folder = folder(&[("a.kata", "part good = box(1, 2, 3)\npart bad = box(1, 2)")]);
     let output = run(folder.path(), &["measure", "a.kata", "--json"]);

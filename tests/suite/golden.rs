@@ -28,7 +28,8 @@ fn fault(folder: &Path) -> Option<String> {
     }
     let value: Value = serde_json::from_slice(&output.stdout).expect("JSON");
     let parts = value["parts"].as_object().expect("parts");
-    let found: String = parts.iter().map(|(name, measures)| measures_text(name, measures)).collect();
+    let found: String =
+        parts.iter().map(|(name, measures)| measures_text(name, measures)).collect();
     let file = folder.join("measures.txt");
     if env::var_os("KATACHI_UPDATE").is_some() {
         fs::write(&file, &found).expect("writable");

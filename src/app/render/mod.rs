@@ -8,6 +8,9 @@ use std::io::{self, IsTerminal, Write};
 
 use crate::base::{Diagnostic, SourceMap};
 
+/// So many diagnostics are drawn for people; the rest are counted. Nobody reads more.
+const MOST_DRAWN: usize = 50;
+
 /// How diagnostics are written.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default, clap::ValueEnum)]
 pub enum Style {
@@ -35,12 +38,17 @@ fn rendered(
     diagnostics: &[Diagnostic],
 ) -> io::Result<Vec<u8>> {
     let mut text = vec![];
-    for diagnostic in diagnostics {
+    let most = if style == Style::Human { MOST_DRAWN } else { usize::MAX };
+    for diagnostic in diagnostics.iter().take(most) {
         match style {
             Style::Human => human::write(&mut text, color, sources, diagnostic)?,
             Style::Short => short::write(&mut text, sources, diagnostic)?,
             Style::Json => json::write(&mut text, sources, diagnostic)?,
         }
+    }
+    if diagnostics.len() > most {
+        let (more, hint) = (diagnostics.len() - most, "--diagnostics short shows all");
+        writeln!(text, "... and {more} more; {hint}")?;
     }
     Ok(text)
 }
@@ -63,6 +71,14 @@ mod tests {
             .help("did you mean `r`?")
             .fix(Span::new(id, 15, 21), "r");
         (sources, diagnostic)
+    }
+
+    #[test]
+    fn people_are_not_flooded() {
+        let (sources, diagnostic) = example();
+        let many = vec![diagnostic; MOST_DRAWN + 7];
+        let text = rendered(Style::Human, false, &sources, &many).expect("a vector is writable");
+        assert!(String::from_utf8(text).expect("text").contains("and 7 more"));
     }
 
     fn text(style: Style) -> String {

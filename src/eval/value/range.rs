@@ -50,7 +50,8 @@ impl Range {
     pub fn element(&self, index: u64) -> Value {
         let number = self.start + index as f64 * self.step;
         let last = self.inclusive && index + 1 == self.count;
-        let at_end = last && (number - self.end).abs() <= WHOLE * self.step.abs() * self.count as f64;
+        let at_end =
+            last && (number - self.end).abs() <= WHOLE * self.step.abs() * self.count as f64;
         Value::Number(if at_end { self.end } else { number }, self.dimension)
     }
 
