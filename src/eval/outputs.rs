@@ -195,7 +195,7 @@ impl Evaluator<'_> {
         if let Some(number) = named {
             let at = unit.globals[number].name.span;
             let value = self.global(instance, number as u32, at)?;
-            return self.as_shape(&value, at)?.map_or_else(|| self.empty_solid(at), Ok);
+            return self.as_shape(&value, at)?.map_or_else(|| self.empty_solid(output, at), Ok);
         }
         let anonymous = unit.globals.iter().enumerate();
         let anonymous = anonymous.filter(|(_, global)| global.kind == GlobalKind::Anonymous);
@@ -214,7 +214,11 @@ impl Evaluator<'_> {
         .into())
     }
 
-    fn empty_solid(&mut self, at: Span) -> Outcome<ShapeId> {
+    /// What an output is whose list holds no shape.
+    fn empty_solid(&mut self, output: &str, at: Span) -> Outcome<ShapeId> {
+        let words = format!("`{output}` is empty: its list holds no shape");
+        let warning = Diagnostic::warning(Code::EmptyResult, words).label(at, "");
+        self.record(warning.help("`EMPTY` says so on purpose"));
         Ok(self.add_node(crate::shape::Node::Empty(crate::shape::Kind::Solid), at))
     }
 
@@ -391,6 +395,21 @@ impl Evaluator<'_> {
         self.dry = false;
         if std::mem::take(&mut self.skipped) {
             self.forget();
+        }
+    }
+
+    /// Evaluates the top-level values, so that a mistake in one is told even when no output uses it.
+    pub fn bindings(&mut self, instance: InstanceId) {
+        self.steps_taken = 0;
+        if self.admitted(instance).is_err() {
+            return;
+        }
+        let unit = self.unit_of(instance);
+        for (number, global) in unit.globals.iter().enumerate() {
+            if global.kind == GlobalKind::Value {
+                let value = self.global(instance, number as u32, global.name.span);
+                value.err().iter().for_each(|failure| self.report(failure));
+            }
         }
     }
 

@@ -207,7 +207,7 @@ mod tests {
         ] {
             assert_eq!(scaled(value, factor), product, "{value} * {factor}");
         }
-        assert_eq!(scaled(2.0, f64::NAN).is_nan(), true);
+        assert!(scaled(2.0, f64::NAN).is_nan());
     }
 
     #[test]

@@ -6,6 +6,7 @@ mod eval;
 mod examples;
 mod floors;
 mod formats;
+mod golden;
 mod grammar;
 mod laws;
 mod made;

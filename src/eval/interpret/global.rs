@@ -368,7 +368,9 @@ impl Evaluator<'_> {
         if inside {
             return Ok(value);
         }
-        let message = format!("the parameter `{name}` is {value}; it must be in {choices}");
+        let quote = if matches!(value, Value::Text(_)) { "\"" } else { "" };
+        let message =
+            format!("the parameter `{name}` is {quote}{value}{quote}; it must be in {choices}");
         let error = placed(Diagnostic::error(base::Code::BadParam, message), at);
         let error = error.label(span, "allowed values");
         match (&choices, &value) {

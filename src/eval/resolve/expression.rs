@@ -4,7 +4,7 @@ use super::{Resolver, function::Ending};
 use crate::{
     base::{self, Diagnostic, Span},
     eval::{
-        dimension::{unit_factor, unit_text},
+        dimension::{literal, unit_factor, unit_text},
         stack::deep,
         unit::{
             ArgumentCode, BinderCode, CallCode, Code, CodeId, ForCode, MethodCode, RangeCode,
@@ -12,10 +12,7 @@ use crate::{
         },
         value::{Value, number_text},
     },
-    syntax::{
-        ast::{self, BinaryOp, Expr, ExprKind, UnaryOp},
-        number::scaled,
-    },
+    syntax::ast::{self, BinaryOp, Expr, ExprKind, UnaryOp},
 };
 
 impl Resolver<'_> {
@@ -73,18 +70,9 @@ impl Resolver<'_> {
     }
 
     fn number(&mut self, value: f64, unit: Option<&ast::Unit>, span: Span) -> CodeId {
-        let number = match unit {
-            None => Some(Value::bare(value)),
-            Some(unit) => {
-                let (factor, dimension) = unit_factor(unit.name);
-                let exponent = i32::from(unit.exponent);
-                let number = in_base_unit(value, factor, exponent);
-                dimension.power(exponent).map(|dimension| Value::Number(number, dimension))
-            }
-        };
-        match number {
-            Some(number @ Value::Number(value, _)) if value.is_finite() => {
-                self.constant(number, span)
+        match literal(value, unit) {
+            Some((number, dimension)) if number.is_finite() => {
+                self.constant(Value::Number(number, dimension), span)
             }
             _ => {
                 let error = Diagnostic::error(base::Code::BadToken, "this number is too large")
@@ -233,14 +221,6 @@ impl Resolver<'_> {
         }
         codes.into()
     }
-}
-
-/// A literal in millimetres or degrees: scaled in decimals as often as the unit counts.
-fn in_base_unit(value: f64, factor: f64, exponent: i32) -> f64 {
-    if exponent < 0 {
-        return value / libm::pow(factor, f64::from(-exponent));
-    }
-    (0..exponent).fold(value, |value, _| scaled(value, factor))
 }
 
 /// The size of one of the unit a number is written in: 25.4 for `3in` and `-3in`.
