@@ -89,16 +89,8 @@ fn not<'s>(primary: impl Parse<'s, Expr>) -> Boxed<'s, Expr> {
 
 /// cmp = range [ ("==" | "!=" | "<" | "<=" | ">" | ">=") range ]
 fn cmp<'s>(primary: impl Parse<'s, Expr>) -> Boxed<'s, Expr> {
-    const COMPARISONS: TokenSet = TokenSet::of(&[
-        Token::Equal,
-        Token::NotEqual,
-        Token::Less,
-        Token::LessEqual,
-        Token::Greater,
-        Token::GreaterEqual,
-    ]);
     let range = range(primary);
-    let tail = sign(COMPARISONS).then(range.clone());
+    let tail = sign(TokenSet::COMPARISONS).then(range.clone());
     range
         .then(tail.or_not())
         .map_with(|(left, tail), extra| match tail {
