@@ -9,5 +9,6 @@ mod grammar;
 mod laws;
 mod readers;
 mod readme;
+mod regressions;
 mod scad;
 mod sources;
