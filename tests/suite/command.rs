@@ -331,3 +331,31 @@ fn a_200_mb_stl_is_read() {
     let value: Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert_eq!(value["parts"]["m"]["volume"], f64::from(n).powi(3));
 }
+
+#[test]
+fn mistakes_that_no_output_uses_are_told_and_the_rest_is_made() {
+    let text = "a = cylinder(radius = 5, h = 2)\nv = volume(p)\npart p = box(1, 2, 3)\npart q = box(1, 2)";
+    let folder = folder(&[("m.kata", text)]);
+    let at = folder.path();
+    let lines = |arguments: &[&str]| {
+        let output = run(at, arguments);
+        assert_eq!(code(&output), 1, "{arguments:?}");
+        let mut lines: Vec<String> = err(&output).lines().map(str::to_string).collect();
+        lines.sort();
+        lines
+    };
+    let both = lines(&["check", "m.kata", "--diagnostics", "short"]);
+    assert!(both.len() == 2 && both[0].contains("radius") && both[1].contains("`z`"), "{both:?}");
+    assert_eq!(lines(&["build", "m.kata", "--diagnostics", "short"]), both);
+    assert_eq!(lines(&["measure", "m.kata", "--diagnostics", "short"]), both);
+    assert_eq!(lines(&["measure", "m.kata", "-p", "p", "--diagnostics", "short"]), both[..1]);
+    assert_eq!(names(&at.join("out")), ["p.stl"]);
+}
+
+#[test]
+fn a_failing_assert_is_told_once_however_many_outputs_there_are() {
+    let text = "part p = box(1, 2, 3)\npart q = p\nexport \"e.stl\" = q\nassert volume(p) > 7, \"thin\"";
+    let folder = folder(&[("m.kata", text)]);
+    let output = run(folder.path(), &["build", "m.kata", "--diagnostics", "short"]);
+    assert_eq!((code(&output), err(&output).lines().count()), (1, 1), "{}", err(&output));
+}
