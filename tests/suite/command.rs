@@ -124,11 +124,14 @@ fn parameters_from_outside_are_checked() {
     let folder =
         folder(&[("a.kata", text), ("w.json", "{\"width\": 4}"), ("bad.json", "{\"with\": 4}")]);
     let at = folder.path();
-    refused(at, &["build", "a.kata", "-D", "widht=3mm"], 1, "width");
+    refused(at, &["build", "a.kata", "-D", "widht=3mm"], 2, "did you mean `width`?");
     refused(at, &["build", "a.kata", "-D", "width=30deg"], 1, "length");
     refused(at, &["build", "a.kata", "-D", "width=10mm"], 1, "9");
-    refused(at, &["build", "a.kata", "-D", "width=("], 1, "-D width:1:");
-    refused(at, &["build", "a.kata", "-D", "@bad.json"], 1, "width");
+    refused(at, &["build", "a.kata", "-D", "width=("], 2, "-D width:1:");
+    refused(at, &["build", "a.kata", "-D", "width=\"lip\""], 1, "string");
+    refused(at, &["build", "a.kata", "-D", "width=lip"], 2, "quotes");
+    refused(at, &["build", "a.kata", "-D", "width=1 2"], 2, "-D width:1:");
+    refused(at, &["build", "a.kata", "-D", "@bad.json"], 2, "width");
     for (define, volume) in [("width=0.2cm", 2.0), ("@w.json", 4.0)] {
         let output = run(at, &["measure", "a.kata", "--json", "-D", define]);
         let value: Value = serde_json::from_slice(&output.stdout).expect("JSON");

@@ -264,7 +264,10 @@ impl Evaluator<'_> {
             return Ok(());
         }
         let message = format!("{} has no parameter `{}`", unit.path, given.name);
-        let error = Diagnostic::error(base::Code::BadParam, message);
+        // From the command line, a name that is not there is a wrong use of the command.
+        let from_outside = at == Span::default();
+        let code = if from_outside { base::Code::Usage } else { base::Code::BadParam };
+        let error = Diagnostic::error(code, message);
         let error = match given.span.or((at != Span::default()).then_some(at)) {
             Some(span) => error.label(span, ""),
             None => error,
