@@ -296,6 +296,9 @@ impl Evaluator<'_> {
         let value = self.global(instance, export.global, at)?;
         let file = self.eval_in(instance, export.file, global.frame)?.to_string();
         if let Value::Record(record) = &value {
+            if record.fields().is_empty() {
+                return fail(Code::WrongKind, at, "an export needs a shape, got an empty record");
+            }
             let mut parts = vec![];
             for (name, value) in record.fields() {
                 parts.push((name.to_string(), self.export_shape(value, at, name)?));

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::{
     Measures, Override, Session,
     artifact::{Artifact, Format, Part},
+    clash,
 };
 use crate::{
     base::{Code, Diagnostic, Phase, watch::during},
@@ -127,6 +128,8 @@ impl<'s> Model<'s> {
             let file = format!("{}.{}", part.name, format.extension());
             artifacts.push(Artifact { file, format, parts: vec![part] });
         }
+        let (artifacts, clashes) = clash::refuse_clashes(artifacts);
+        diagnostics.extend(clashes);
         artifacts
     }
 
@@ -185,8 +188,7 @@ impl<'s> Model<'s> {
             }
             let outcome = during(self.session.watch, Phase::Write, || {
                 let bytes = artifact.encode(&self.session.realizer, self.evaluator.graph())?;
-                let refused = |words| Diagnostic::error(Code::UnwritableFile, words);
-                write(artifact, &bytes).map_err(refused)
+                write(artifact, &bytes).map_err(|words| artifact.unwritable(words))
             });
             diagnostics.extend(outcome.err());
         }

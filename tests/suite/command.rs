@@ -362,3 +362,19 @@ fn a_failing_assert_is_told_once_however_many_outputs_there_are() {
     let output = run(folder.path(), &["build", "m.kata", "--diagnostics", "short"]);
     assert_eq!((code(&output), err(&output).lines().count()), (1, 1), "{}", err(&output));
 }
+
+#[test]
+fn outputs_of_one_file_are_refused_and_every_refusal_has_a_place() {
+    let text = "part a = box(1, 1, 1)\npart b = box(2, 2, 2)\nexport \"a.stl\" = b\n\
+                export \"A.stl\" = b\nexport \"c\\\\d.stl\" = b\nexport \"e.stl\" = {}";
+    let folder = folder(&[("m.kata", text)]);
+    let output = run(folder.path(), &["build", "m.kata", "--diagnostics", "short"]);
+    let text = err(&output);
+    assert_eq!((code(&output), text.lines().count()), (1, 4), "{text}");
+    for part in
+        ["m.kata:1:6: error[duplicate]", "m.kata:4:8: error[duplicate]", "m.kata:5:8", "m.kata:6:18"]
+    {
+        assert!(text.contains(part), "{part} is missing in\n{text}");
+    }
+    assert_eq!(names(&folder.path().join("out")), ["a.stl"]);
+}
