@@ -378,3 +378,27 @@ fn outputs_of_one_file_are_refused_and_every_refusal_has_a_place() {
     }
     assert_eq!(names(&folder.path().join("out")), ["a.stl"]);
 }
+
+#[test]
+fn every_kind_of_error_is_a_line_of_json_when_asked_for() {
+    let folder = folder(&[("a.kata", "param w = 5mm\nbox(w, 1)"), ("taken", "")]);
+    let wrong: [(&[&str], &str); 8] = [
+        (&["bild"], "usage"),
+        (&["build", "a.kata", "-j", "0"], "usage"),
+        (&["build", "a.kata", "--tolerance", "3deg"], "usage"),
+        (&["build", "a.kata", "-D", "x=1"], "usage"),
+        (&["build", "a.kata", "--format", "step"], "usage"),
+        (&["build", "none.kata"], "unreadable-file"),
+        (&["build", "a.kata"], "missing-argument"),
+        (&["new", "taken/x"], "unwritable-file"),
+    ];
+    for (arguments, expected) in wrong {
+        let output = run(folder.path(), &[arguments, &["--diagnostics", "json"]].concat());
+        let text = err(&output);
+        assert!(code(&output) > 0 && text.lines().count() == 1, "{arguments:?}\n{text}");
+        let value: Value = serde_json::from_str(&text).expect("JSON");
+        assert_eq!(value["code"], expected, "{arguments:?}");
+        let placed = ["missing-argument"].contains(&expected);
+        assert_eq!(value["line"].is_u64() && value["column"].is_u64(), placed || arguments.contains(&"x=1"));
+    }
+}
