@@ -371,7 +371,8 @@ impl Evaluator<'_> {
         if inside {
             return Ok(value);
         }
-        let message = format!("the parameter `{name}` is {value}; it must be in {choices}");
+        let message =
+            format!("the parameter `{name}` is {}; it must be in {choices}", value.literal());
         let error = placed(Diagnostic::error(base::Code::BadParam, message), at);
         let error = error.label(span, "allowed values");
         match (&choices, &value) {
