@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::{
     Measures, Override, Session,
     artifact::{Artifact, Format, Part},
+    clash,
 };
 use crate::{
     base::{Code, Diagnostic, Phase, watch::during},
@@ -59,10 +60,11 @@ impl<'s> Model<'s> {
         (params, self.evaluator.take_diagnostics())
     }
 
-    /// Evaluates everything that needs no geometry.
-    pub fn check(&mut self) -> Vec<Diagnostic> {
+    /// Evaluates everything that needs no geometry, also what no output uses. With names, outputs of
+    /// other names are left alone.
+    pub fn check(&mut self, names: &[String]) -> Vec<Diagnostic> {
         if let Some(instance) = self.instance {
-            during(self.session.watch, Phase::Eval, || self.evaluator.check(instance));
+            during(self.session.watch, Phase::Eval, || self.evaluator.check(instance, names));
         }
         self.evaluator.take_diagnostics()
     }
@@ -85,10 +87,11 @@ impl<'s> Model<'s> {
         refused.collect()
     }
 
-    /// Measures the outputs of the given names, or all of them.
+    /// Measures the outputs of the given names, or all of them, and [checks](Model::check) the file.
     pub fn measure(&mut self, names: &[String]) -> Measured {
         let mut measured = Measured::default();
         let parts = self.parts(names, &mut measured.diagnostics);
+        measured.diagnostics.extend(self.check(names));
         self.realize(&parts);
         for part in parts {
             let graph = self.evaluator.graph();
@@ -104,7 +107,8 @@ impl<'s> Model<'s> {
 
     /// The files to write. Without names: every export, and every output that none of them writes.
     /// With names: the exports that write nothing else, and the named outputs that none of these
-    /// writes. A format given here writes the outputs alone, each as `<name>.<extension>`.
+    /// writes. A format given here writes the outputs alone, each as `<name>.<extension>`. What
+    /// [`check`](Model::check) finds is among the diagnostics.
     pub fn artifacts(
         &mut self,
         names: &[String],
@@ -116,6 +120,7 @@ impl<'s> Model<'s> {
         if format.is_none() {
             artifacts = self.exports(names, &parts, diagnostics);
         }
+        diagnostics.extend(self.check(names));
         let exported: Vec<ShapeId> =
             artifacts.iter().flat_map(|a| a.parts.iter().map(|part| part.shape)).collect();
         let format = format.unwrap_or(Format::STL);
@@ -123,6 +128,8 @@ impl<'s> Model<'s> {
             let file = format!("{}.{}", part.name, format.extension());
             artifacts.push(Artifact { file, format, parts: vec![part] });
         }
+        let (artifacts, clashes) = clash::refuse_clashes(artifacts);
+        diagnostics.extend(clashes);
         artifacts
     }
 
@@ -181,8 +188,7 @@ impl<'s> Model<'s> {
             }
             let outcome = during(self.session.watch, Phase::Write, || {
                 let bytes = artifact.encode(&self.session.realizer, self.evaluator.graph())?;
-                let refused = |words| Diagnostic::error(Code::UnwritableFile, words);
-                write(artifact, &bytes).map_err(refused)
+                write(artifact, &bytes).map_err(|words| artifact.unwritable(words))
             });
             diagnostics.extend(outcome.err());
         }

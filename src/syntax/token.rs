@@ -291,16 +291,6 @@ impl TokenSet {
     /// No token.
     pub const EMPTY: TokenSet = TokenSet(0);
 
-    /// Signs that compare.
-    pub const COMPARISONS: TokenSet = TokenSet::of(&[
-        Token::Equal,
-        Token::NotEqual,
-        Token::Less,
-        Token::LessEqual,
-        Token::Greater,
-        Token::GreaterEqual,
-    ]);
-
     /// Names and the words that are names where the grammar takes no keyword.
     pub const NAMES: TokenSet = TokenSet::of(&[
         Token::Name,
