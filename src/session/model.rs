@@ -1,6 +1,6 @@
 //! An evaluated file: its outputs, exports, parameters and tests.
 
-use std::sync::Arc;
+use std::{collections::BTreeSet, sync::Arc};
 
 use super::{
     Measures, Override, Session,
@@ -26,6 +26,16 @@ pub struct Model<'s> {
 
 /// Takes the bytes of a file; the error says in words why it could not be written.
 type Sink<'a> = &'a mut dyn FnMut(&Artifact, &[u8]) -> Result<(), String>;
+
+/// The second of two outputs would replace what the first has written.
+fn written_twice(artifact: &Artifact) -> Diagnostic {
+    let words = format!("`{}` is written twice", artifact.file);
+    let error = Diagnostic::error(Code::UnwritableFile, words);
+    let part = artifact.parts.first();
+    part.into_iter()
+        .fold(error, |error, part| error.label(part.span, "the second one is not written"))
+        .help("give each its own file name")
+}
 
 /// What `measure` found.
 #[derive(Debug, Default)]
@@ -123,6 +133,12 @@ impl<'s> Model<'s> {
             let file = format!("{}.{}", part.name, format.extension());
             artifacts.push(Artifact { file, format, parts: vec![part] });
         }
+        let mut files = BTreeSet::new();
+        artifacts.retain(|artifact| {
+            let new = files.insert(artifact.file.clone());
+            diagnostics.extend((!new).then(|| written_twice(artifact)));
+            new
+        });
         artifacts
     }
 
