@@ -108,9 +108,17 @@ pub fn refusal(error: &io::Error) -> FileError {
     match error.kind() {
         io::ErrorKind::NotFound => FileError::NotFound,
         io::ErrorKind::PermissionDenied => FileError::Other("permission denied".to_string()),
-        io::ErrorKind::NotADirectory => FileError::Other("a folder on the way is a file".into()),
-        _ => FileError::Other(error.to_string()),
+        io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists => {
+            FileError::Other("a file stands where a folder is needed".into())
+        }
+        _ => FileError::Other(without_number(error.to_string())),
     }
+}
+
+/// The system's words without its number for them.
+fn without_number(mut words: String) -> String {
+    words.truncate(words.find(" (os error").unwrap_or(words.len()));
+    words.to_lowercase()
 }
 
 #[cfg(test)]

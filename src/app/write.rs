@@ -11,6 +11,9 @@ use super::disk::refusal;
 /// Writes `bytes` to `folder/name`, making folders as needed, and returns the path. `name` uses `/`
 /// and may not leave the folder. On failure no part of the file is left behind; the error is in words.
 pub fn write_whole(folder: &Path, name: &str, bytes: &[u8]) -> Result<PathBuf, String> {
+    if name.contains(|c: char| c.is_control() || c == '\\') {
+        return Err(format!("{name:?} has a character that file names cannot have everywhere"));
+    }
     let path =
         inside(folder, name).ok_or_else(|| format!("`{name}` leads outside the output folder"))?;
     let parent = path.parent().unwrap_or(folder);
@@ -75,7 +78,7 @@ mod tests {
     #[test]
     fn nothing_is_written_outside_or_in_part() {
         let folder = tempfile::tempdir().expect("a temporary folder");
-        for name in ["../a.stl", "/a.stl", "a/../../b.stl", ""] {
+        for name in ["../a.stl", "/a.stl", "a/../../b.stl", "", "a\\b.stl", "a\n.stl", "a\0.stl"] {
             assert!(write_whole(folder.path(), name, b"").is_err(), "{name}");
         }
         fs::create_dir(folder.path().join("taken.stl")).expect("writable");

@@ -231,7 +231,7 @@ impl<'h> Evaluator<'h> {
             Override::Source { source, text } => {
                 let (program, diagnostics) = syntax::parse(*source, text);
                 if let Some(first) = diagnostics.into_iter().find(Diagnostic::is_error) {
-                    return Err(first.into());
+                    return Err(wrong_use(first).into());
                 }
                 let span = Span::new(*source, 0, text.len() as u32);
                 let path: Arc<str> = "<parameter>".into();
@@ -239,11 +239,12 @@ impl<'h> Evaluator<'h> {
                 if let Some(first) = diagnostics.into_iter().next() {
                     let quotes = format!("a string is written in quotes: `{name}=\"{text}\"`");
                     let word = text.chars().all(char::is_alphanumeric);
+                    let first = wrong_use(first);
                     return Err(if word { first.note(quotes) } else { first }.into());
                 }
                 let [global] = &unit.globals[..] else {
                     let words = format!("the value of `{name}` must be one expression");
-                    return fail(Code::BadParam, span, words);
+                    return fail(Code::Usage, span, words);
                 };
                 let (code, frame) = (global.value, global.frame);
                 let id = InstanceId(self.instances.len() as u32);
@@ -400,4 +401,9 @@ impl<'h> Evaluator<'h> {
             other => fail(Code::WrongKind, at, format!("needs a number, got {}", shown(other))),
         }
     }
+}
+
+/// The text of a `-D` that is no expression: not the model is wrong, but the command line.
+fn wrong_use(diagnostic: Diagnostic) -> Diagnostic {
+    Diagnostic { code: Code::Usage, ..diagnostic }
 }

@@ -300,6 +300,9 @@ impl Evaluator<'_> {
         let value = self.global(instance, export.global, at)?;
         let file = self.eval_in(instance, export.file, global.frame)?.to_string();
         if let Value::Record(record) = &value {
+            if record.fields().is_empty() {
+                return fail(Code::WrongKind, at, "an export needs a shape, got an empty record");
+            }
             let mut parts = vec![];
             for (name, value) in record.fields() {
                 parts.push((name.to_string(), self.export_shape(value, at, name)?));
@@ -382,15 +385,18 @@ impl Evaluator<'_> {
     }
 
     /// Evaluates everything that needs no geometry, so that its errors are told: also names that no
-    /// output uses. What asks for geometry is skipped.
-    pub fn check(&mut self, instance: InstanceId) {
+    /// output uses. What asks for geometry is skipped. With `asked`, outputs of other names are left
+    /// alone, and so are exports.
+    pub fn check(&mut self, instance: InstanceId, asked: &[String]) {
         self.steps_taken = 0;
         self.dry = true;
         self.tolerance(instance);
         if self.admitted(instance).is_ok() {
-            self.check_globals(instance);
+            self.check_globals(instance, asked);
             self.outputs(instance);
-            self.exports(instance);
+            if asked.is_empty() {
+                self.exports(instance);
+            }
         }
         self.dry = false;
         if std::mem::take(&mut self.skipped) {
@@ -425,10 +431,18 @@ impl Evaluator<'_> {
         }
     }
 
-    fn check_globals(&mut self, instance: InstanceId) {
+    fn check_globals(&mut self, instance: InstanceId, asked: &[String]) {
         let unit = self.unit_of(instance);
+        let is_asked = |global: &Global| match global.kind {
+            GlobalKind::Anonymous => false,
+            GlobalKind::Output(_) => {
+                asked.is_empty() || asked.iter().any(|name| **name == *global.name.text)
+            }
+            GlobalKind::Export => asked.is_empty(),
+            _ => true,
+        };
         for (number, global) in unit.globals.iter().enumerate() {
-            if global.kind == GlobalKind::Anonymous {
+            if !is_asked(global) {
                 continue;
             }
             if let Err(failure) = self.global(instance, number as u32, global.name.span) {

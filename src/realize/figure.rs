@@ -17,7 +17,7 @@ use super::{
 };
 use crate::{
     base::{Code, Diagnostic},
-    geom::{Contour, EdgeCurve, Placement, Region, Tolerance},
+    geom::{Contour, EdgeCurve, Placement, Region, Tolerance, flatten::MOST_CHORDS, sides},
     input,
     kernel::profile::{
         self, ProfileError,
@@ -58,6 +58,7 @@ impl Coded for ProfileError {
             }
             ProfileError::Font { .. } | ProfileError::Glyph { .. } => Code::BadFile,
             ProfileError::LongText { .. } => Code::Limit,
+            ProfileError::Sides { sides } if *sides > profile::MOST_SIDES => Code::Limit,
             _ => Code::Degenerate,
         }
     }
@@ -127,10 +128,12 @@ fn build(
         }
         Node::OffsetProfile { profile, d } => {
             let figure = part(profile)?;
+            check_arcs(graph, id, *d, tolerance)?;
             Ok(figure.with_region(profile::offset(&figure.region, *d, tolerance)))
         }
         Node::RoundProfile { profile, r } => {
             let figure = part(profile)?;
+            check_arcs(graph, id, *r, tolerance)?;
             Ok(figure.with_region(profile::round(&figure.region, *r, tolerance)))
         }
         Node::Transform { placement, child } => {
@@ -157,6 +160,20 @@ fn build(
         }
         _ => Ok(Figure::flat(Region::default())),
     }
+}
+
+/// Refuses arcs that need more chords than are made.
+fn check_arcs(graph: &ShapeGraph, id: ShapeId, radius: f64, tolerance: Tolerance) -> Made<()> {
+    let needed = sides::circle(radius, tolerance);
+    if needed <= MOST_CHORDS {
+        return Ok(());
+    }
+    let words = format!(
+        "a circle of {}mm needs {needed} chords at this tolerance; the limit is {MOST_CHORDS}",
+        radius.abs()
+    );
+    let diagnostic = Diagnostic::error(Code::Limit, words).label(graph.origin(id), "");
+    Err(failure(diagnostic.help("give a larger tolerance")))
 }
 
 /// The figure after a placement; `None` where that flattens it.

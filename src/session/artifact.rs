@@ -134,9 +134,21 @@ impl Artifact {
     }
 
     fn refused(&self, words: &str) -> Diagnostic {
-        let diagnostic =
-            Diagnostic::error(Code::UnwritableFile, format!("`{}`: {words}", self.file));
-        self.parts.iter().fold(diagnostic, |d, part| d.label(part.span, ""))
+        self.unwritable(format!("`{}`: {words}", self.file))
+    }
+
+    /// The error for a file that cannot be written, at what asked for it.
+    pub(super) fn unwritable(&self, words: String) -> Diagnostic {
+        let diagnostic = Diagnostic::error(Code::UnwritableFile, words);
+        match self.span() {
+            Some(span) => diagnostic.label(span, ""),
+            None => diagnostic,
+        }
+    }
+
+    /// Where the model asks for it.
+    pub(super) fn span(&self) -> Option<Span> {
+        self.parts.first().map(|part| part.span)
     }
 }
 

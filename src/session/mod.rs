@@ -12,6 +12,7 @@
 //! ```
 
 mod artifact;
+mod clash;
 mod data;
 mod host;
 mod model;

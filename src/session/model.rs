@@ -1,10 +1,11 @@
 //! An evaluated file: its outputs, exports, parameters and tests.
 
-use std::{collections::BTreeSet, sync::Arc};
+use std::sync::Arc;
 
 use super::{
     Measures, Override, Session,
     artifact::{Artifact, Format, Part},
+    clash,
 };
 use crate::{
     base::{Code, Diagnostic, Phase, watch::during},
@@ -26,16 +27,6 @@ pub struct Model<'s> {
 
 /// Takes the bytes of a file; the error says in words why it could not be written.
 type Sink<'a> = &'a mut dyn FnMut(&Artifact, &[u8]) -> Result<(), String>;
-
-/// The second of two outputs would replace what the first has written.
-fn written_twice(artifact: &Artifact) -> Diagnostic {
-    let words = format!("`{}` is written twice", artifact.file);
-    let error = Diagnostic::error(Code::UnwritableFile, words);
-    let part = artifact.parts.first();
-    part.into_iter()
-        .fold(error, |error, part| error.label(part.span, "the second one is not written"))
-        .help("give each its own file name")
-}
 
 /// What `measure` found.
 #[derive(Debug, Default)]
@@ -69,10 +60,11 @@ impl<'s> Model<'s> {
         (params, self.evaluator.take_diagnostics())
     }
 
-    /// Evaluates everything that needs no geometry.
-    pub fn check(&mut self) -> Vec<Diagnostic> {
+    /// Evaluates everything that needs no geometry, also what no output uses. With names, outputs of
+    /// other names are left alone.
+    pub fn check(&mut self, names: &[String]) -> Vec<Diagnostic> {
         if let Some(instance) = self.instance {
-            during(self.session.watch, Phase::Eval, || self.evaluator.check(instance));
+            during(self.session.watch, Phase::Eval, || self.evaluator.check(instance, names));
         }
         self.evaluator.take_diagnostics()
     }
@@ -95,10 +87,11 @@ impl<'s> Model<'s> {
         refused.collect()
     }
 
-    /// Measures the outputs of the given names, or all of them.
+    /// Measures the outputs of the given names, or all of them, and [checks](Model::check) the file.
     pub fn measure(&mut self, names: &[String]) -> Measured {
         let mut measured = Measured::default();
         let parts = self.parts(names, &mut measured.diagnostics);
+        measured.diagnostics.extend(self.check(names));
         self.realize(&parts);
         for part in parts {
             let graph = self.evaluator.graph();
@@ -114,7 +107,8 @@ impl<'s> Model<'s> {
 
     /// The files to write. Without names: every export, and every output that none of them writes.
     /// With names: the exports that write nothing else, and the named outputs that none of these
-    /// writes. A format given here writes the outputs alone, each as `<name>.<extension>`.
+    /// writes. A format given here writes the outputs alone, each as `<name>.<extension>`. What
+    /// [`check`](Model::check) finds is among the diagnostics.
     pub fn artifacts(
         &mut self,
         names: &[String],
@@ -126,6 +120,7 @@ impl<'s> Model<'s> {
         if format.is_none() {
             artifacts = self.exports(names, &parts, diagnostics);
         }
+        diagnostics.extend(self.check(names));
         let exported: Vec<ShapeId> =
             artifacts.iter().flat_map(|a| a.parts.iter().map(|part| part.shape)).collect();
         let format = format.unwrap_or(Format::STL);
@@ -133,12 +128,8 @@ impl<'s> Model<'s> {
             let file = format!("{}.{}", part.name, format.extension());
             artifacts.push(Artifact { file, format, parts: vec![part] });
         }
-        let mut files = BTreeSet::new();
-        artifacts.retain(|artifact| {
-            let new = files.insert(artifact.file.clone());
-            diagnostics.extend((!new).then(|| written_twice(artifact)));
-            new
-        });
+        let (artifacts, clashes) = clash::refuse_clashes(artifacts);
+        diagnostics.extend(clashes);
         artifacts
     }
 
@@ -197,8 +188,7 @@ impl<'s> Model<'s> {
             }
             let outcome = during(self.session.watch, Phase::Write, || {
                 let bytes = artifact.encode(&self.session.realizer, self.evaluator.graph())?;
-                let refused = |words| Diagnostic::error(Code::UnwritableFile, words);
-                write(artifact, &bytes).map_err(refused)
+                write(artifact, &bytes).map_err(|words| artifact.unwritable(words))
             });
             diagnostics.extend(outcome.err());
         }

@@ -159,24 +159,19 @@ fn syntax_errors_leave_the_rest_of_the_file() {
 }
 
 #[test]
-fn no_file_is_written_twice() {
-    let text = "export \"o.stl\" = box(1, 1, 1)\nexport \"o.stl\" = box(2, 2, 2)";
-    let folder = folder(&[("a.kata", text)]);
-    refused(folder.path(), &["build", "a.kata"], 1, "`o.stl` is written twice");
-    assert_eq!(names(&folder.path().join("out")), ["o.stl"]);
-}
-
-#[test]
 fn parameters_from_outside_are_checked() {
     let text = "param width = 5mm in 1mm..9mm\npart p = box(width, 1, 1)";
     let folder =
         folder(&[("a.kata", text), ("w.json", "{\"width\": 4}"), ("bad.json", "{\"with\": 4}")]);
     let at = folder.path();
-    refused(at, &["build", "a.kata", "-D", "widht=3mm"], 1, "width");
+    refused(at, &["build", "a.kata", "-D", "widht=3mm"], 2, "did you mean `width`?");
     refused(at, &["build", "a.kata", "-D", "width=30deg"], 1, "length");
     refused(at, &["build", "a.kata", "-D", "width=10mm"], 1, "9");
-    refused(at, &["build", "a.kata", "-D", "width=("], 1, "-D width:1:");
-    refused(at, &["build", "a.kata", "-D", "@bad.json"], 1, "width");
+    refused(at, &["build", "a.kata", "-D", "width=("], 2, "-D width:1:");
+    refused(at, &["build", "a.kata", "-D", "width=\"lip\""], 1, "string");
+    refused(at, &["build", "a.kata", "-D", "width=lip"], 2, "quotes");
+    refused(at, &["build", "a.kata", "-D", "width=1 2"], 2, "-D width:1:");
+    refused(at, &["build", "a.kata", "-D", "@bad.json"], 2, "width");
     for (define, volume) in [("width=0.2cm", 2.0), ("@w.json", 4.0)] {
         let output = run(at, &["measure", "a.kata", "--json", "-D", define]);
         let value: Value = serde_json::from_slice(&output.stdout).expect("JSON");
@@ -378,4 +373,80 @@ fn a_200_mb_stl_is_read() {
     assert_eq!(code(&output), 0, "{}", err(&output));
     let value: Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert_eq!(value["parts"]["m"]["volume"], f64::from(n).powi(3));
+}
+
+#[test]
+fn mistakes_that_no_output_uses_are_told_and_the_rest_is_made() {
+    let text =
+        "a = cylinder(radius = 5, h = 2)\nv = volume(p)\npart p = box(1, 2, 3)\npart q = box(1, 2)";
+    let folder = folder(&[("m.kata", text)]);
+    let at = folder.path();
+    let lines = |arguments: &[&str]| {
+        let output = run(at, arguments);
+        assert_eq!(code(&output), 1, "{arguments:?}");
+        let mut lines: Vec<String> = err(&output).lines().map(str::to_string).collect();
+        lines.sort();
+        lines
+    };
+    let both = lines(&["check", "m.kata", "--diagnostics", "short"]);
+    assert!(both.len() == 2 && both[0].contains("radius") && both[1].contains("`z`"), "{both:?}");
+    assert_eq!(lines(&["build", "m.kata", "--diagnostics", "short"]), both);
+    assert_eq!(lines(&["measure", "m.kata", "--diagnostics", "short"]), both);
+    assert_eq!(lines(&["measure", "m.kata", "-p", "p", "--diagnostics", "short"]), both[..1]);
+    assert_eq!(names(&at.join("out")), ["p.stl"]);
+}
+
+#[test]
+fn a_failing_assert_is_told_once_however_many_outputs_there_are() {
+    let text =
+        "part p = box(1, 2, 3)\npart q = p\nexport \"e.stl\" = q\nassert volume(p) > 7, \"thin\"";
+    let folder = folder(&[("m.kata", text)]);
+    let output = run(folder.path(), &["build", "m.kata", "--diagnostics", "short"]);
+    assert_eq!((code(&output), err(&output).lines().count()), (1, 1), "{}", err(&output));
+}
+
+#[test]
+fn outputs_of_one_file_are_refused_and_every_refusal_has_a_place() {
+    let text = "part a = box(1, 1, 1)\npart b = box(2, 2, 2)\nexport \"a.stl\" = b\n\
+                export \"A.stl\" = b\nexport \"c\\\\d.stl\" = b\nexport \"e.stl\" = {}";
+    let folder = folder(&[("m.kata", text)]);
+    let output = run(folder.path(), &["build", "m.kata", "--diagnostics", "short"]);
+    let text = err(&output);
+    assert_eq!((code(&output), text.lines().count()), (1, 4), "{text}");
+    for part in [
+        "m.kata:1:6: error[duplicate]",
+        "m.kata:4:8: error[duplicate]",
+        "m.kata:5:8",
+        "m.kata:6:18",
+    ] {
+        assert!(text.contains(part), "{part} is missing in\n{text}");
+    }
+    assert_eq!(names(&folder.path().join("out")), ["a.stl"]);
+}
+
+#[test]
+fn every_kind_of_error_is_a_line_of_json_when_asked_for() {
+    let folder = folder(&[("a.kata", "param w = 5mm\nbox(w, 1)"), ("taken", "")]);
+    let wrong: [(&[&str], &str); 8] = [
+        (&["bild"], "usage"),
+        (&["build", "a.kata", "-j", "0"], "usage"),
+        (&["build", "a.kata", "--tolerance", "3deg"], "usage"),
+        (&["build", "a.kata", "-D", "x=1"], "usage"),
+        (&["build", "a.kata", "--format", "step"], "usage"),
+        (&["build", "none.kata"], "unreadable-file"),
+        (&["build", "a.kata"], "missing-argument"),
+        (&["new", "taken/x"], "unwritable-file"),
+    ];
+    for (arguments, expected) in wrong {
+        let output = run(folder.path(), &[arguments, &["--diagnostics", "json"]].concat());
+        let text = err(&output);
+        assert!(code(&output) > 0 && text.lines().count() == 1, "{arguments:?}\n{text}");
+        let value: Value = serde_json::from_str(&text).expect("JSON");
+        assert_eq!(value["code"], expected, "{arguments:?}");
+        let placed = ["missing-argument"].contains(&expected);
+        assert_eq!(
+            value["line"].is_u64() && value["column"].is_u64(),
+            placed || arguments.contains(&"x=1")
+        );
+    }
 }

@@ -13,5 +13,6 @@ mod made;
 mod openscad;
 mod readers;
 mod readme;
+mod regressions;
 mod scad;
 mod sources;

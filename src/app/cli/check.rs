@@ -13,6 +13,6 @@ pub fn run(arguments: &Check, style: Style) -> io::Result<Exit> {
     };
     let session = desk.session();
     let (mut model, mut diagnostics) = session.compile(&desk.entry, &desk.given);
-    diagnostics.extend(model.check());
+    diagnostics.extend(model.check(&[]));
     desk.report(&session, &diagnostics)
 }

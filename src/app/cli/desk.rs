@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     app::{
-        disk::Disk,
+        disk::{Disk, refusal},
         render::{self, Style},
         stopwatch::Stopwatch,
         write::write_whole,
@@ -103,7 +103,7 @@ fn write_beside(path: &Path, bytes: &[u8]) -> Result<(), String> {
 /// The parameters of one `-D`: `name=value`, or `@file.json`.
 fn defined(define: &str) -> Result<Vec<(String, Given)>, String> {
     if let Some(file) = define.strip_prefix('@') {
-        let text = fs::read_to_string(file).map_err(|error| format!("`{file}`: {error}"))?;
+        let text = fs::read_to_string(file).map_err(|e| format!("`{file}`: {}", refusal(&e)))?;
         let object: serde_json::Map<String, serde_json::Value> =
             serde_json::from_str(&text).map_err(|error| format!("`{file}`: {error}"))?;
         return Ok(object.into_iter().map(|(name, value)| (name, Given::Json(value))).collect());

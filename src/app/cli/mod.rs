@@ -11,11 +11,12 @@ mod params;
 mod test;
 
 use std::{
+    ffi::OsString,
     io::{self, Write},
     process::ExitCode,
 };
 
-use clap::Parser;
+use clap::{Parser, ValueEnum};
 
 use self::args::{Cli, Command};
 pub use self::exit::Exit;
@@ -26,10 +27,7 @@ use crate::base::{Code, Diagnostic, SourceMap};
 pub fn run() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
-        Err(error) => {
-            let _ = error.print();
-            return ExitCode::from(error.exit_code() as u8);
-        }
+        Err(error) => return refuse(&error),
     };
     match dispatch(&cli) {
         Ok(exit) => exit.into(),
@@ -40,6 +38,29 @@ pub fn run() -> ExitCode {
             Exit::Model.into()
         }
     }
+}
+
+/// Help or version on standard output; a wrong use in the style that the arguments ask for.
+fn refuse(error: &clap::Error) -> ExitCode {
+    let style = style_asked(std::env::args_os());
+    if !error.use_stderr() || style == Style::Human {
+        let _ = error.print();
+        return ExitCode::from(error.exit_code() as u8);
+    }
+    let text = error.render().to_string();
+    let words = text.lines().next().unwrap_or_default();
+    let words = words.strip_prefix("error: ").unwrap_or(words);
+    fail(style, Exit::Usage, words).unwrap_or(Exit::Usage).into()
+}
+
+/// The last style named by `--diagnostics` in arguments that cannot be understood as a whole.
+fn style_asked(arguments: impl Iterator<Item = OsString>) -> Style {
+    let arguments: Vec<OsString> = arguments.collect();
+    let pairs = arguments.windows(2).filter(|pair| pair[0] == "--diagnostics");
+    let apart = pairs.filter_map(|pair| pair[1].to_str());
+    let joined = arguments.iter().filter_map(|a| a.to_str()?.strip_prefix("--diagnostics="));
+    let named = apart.chain(joined).filter_map(|name| Style::from_str(name, false).ok());
+    named.last().unwrap_or_default()
 }
 
 fn dispatch(cli: &Cli) -> io::Result<Exit> {

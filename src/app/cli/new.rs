@@ -61,7 +61,7 @@ pub fn run(arguments: &New, style: Style) -> io::Result<Exit> {
 fn is_taken(folder: &Path) -> bool {
     match fs::read_dir(folder) {
         Ok(mut entries) => entries.next().is_some(),
-        Err(error) => error.kind() != io::ErrorKind::NotFound,
+        Err(_) => folder.symlink_metadata().is_ok(),
     }
 }
 

@@ -101,6 +101,7 @@ mod tests {
         let place = &value["labels"][0];
         assert_eq!((&place["line"], &place["column"]), (&2.into(), &8.into()));
         assert_eq!((&place["start"], &place["end"]), (&15.into(), &21.into()));
+        assert_eq!((&value["path"], &value["line"]), (&"lid.kata".into(), &2.into()));
         assert_eq!(value["fix"]["replacement"], "r");
         assert_eq!(value["code"], "unknown-argument");
     }

@@ -264,7 +264,10 @@ impl Evaluator<'_> {
             return Ok(());
         }
         let message = format!("{} has no parameter `{}`", unit.path, given.name);
-        let error = Diagnostic::error(base::Code::BadParam, message);
+        // From the command line, a name that is not there is a wrong use of the command.
+        let from_outside = at == Span::default();
+        let code = if from_outside { base::Code::Usage } else { base::Code::BadParam };
+        let error = Diagnostic::error(code, message);
         let error = match given.span.or((at != Span::default()).then_some(at)) {
             Some(span) => error.label(span, ""),
             None => error,
@@ -368,9 +371,8 @@ impl Evaluator<'_> {
         if inside {
             return Ok(value);
         }
-        let quote = if matches!(value, Value::Text(_)) { "\"" } else { "" };
         let message =
-            format!("the parameter `{name}` is {quote}{value}{quote}; it must be in {choices}");
+            format!("the parameter `{name}` is {}; it must be in {choices}", value.literal());
         let error = placed(Diagnostic::error(base::Code::BadParam, message), at);
         let error = error.label(span, "allowed values");
         match (&choices, &value) {

@@ -40,6 +40,21 @@ impl fmt::Display for Value {
     }
 }
 
+impl Value {
+    /// As it is written in the language: a string in quotes.
+    pub fn literal(&self) -> impl fmt::Display + '_ {
+        Literal(self)
+    }
+}
+
+struct Literal<'a>(&'a Value);
+
+impl fmt::Display for Literal<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        Printer { f, left: SHOWN }.value(self.0, DEPTH)
+    }
+}
+
 struct Printer<'a, 'b> {
     f: &'a mut fmt::Formatter<'b>,
     /// Elements that may still be printed.

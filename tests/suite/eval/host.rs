@@ -202,7 +202,7 @@ fn evaluate_all(evaluator: &mut Evaluator, instance: InstanceId) -> Vec<Diagnost
     for i in 0..evaluator.exports(instance).len() {
         let _ = evaluator.export_shapes(instance, i);
     }
-    evaluator.check(instance);
+    evaluator.check(instance, &[]);
     let mut diagnostics = vec![];
     for i in 0..evaluator.tests(instance).len() {
         let outcome = evaluator.run_test(instance, i, false);

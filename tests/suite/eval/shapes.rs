@@ -209,7 +209,7 @@ fn check_asks_no_geometry_and_leaves_what_it_skips() {
     let bench = Bench::new(&files);
     let mut evaluator = Evaluator::new(&bench, Limits::default());
     let id = evaluator.open("main.kata", &[]).expect("it opens");
-    evaluator.check(id);
+    evaluator.check(id, &[]);
     let told = evaluator.take_diagnostics();
     assert_eq!(told.len(), 1, "{told:?}");
     assert_eq!(told[0].code, Code::Arithmetic);
@@ -225,7 +225,7 @@ fn asserts_that_check_skips_are_made_up_for() {
     let bench = Bench::new(&files);
     let mut evaluator = Evaluator::new(&bench, Limits::default());
     let id = evaluator.open("main.kata", &[]).expect("it opens");
-    evaluator.check(id);
+    evaluator.check(id, &[]);
     assert!(evaluator.take_diagnostics().is_empty());
     assert!(evaluator.shape_of(id, "p").is_err());
     assert_eq!(evaluator.take_diagnostics()[0].message, "too small");

@@ -11,8 +11,8 @@ use super::{
 };
 use crate::made::{Made, OFF, on_two_threads, solid};
 
-/// Seconds for one export; the slowest case takes one.
-const PATIENCE: u32 = 60;
+/// Seconds for one export; the slowest takes five when nothing else runs.
+const PATIENCE: u32 = 120;
 
 #[test]
 #[ignore = "needs OpenSCAD; run by .ci/run"]
@@ -43,8 +43,8 @@ fn openscad_makes_the_same_of_our_sources() {
 ///
 /// Not among them: `enclosure`. OpenSCAD rounds a box to a grid of 1e-6 mm when it hands it to CGAL, but
 /// not what CGAL made already; so its pillars stand less than that above the floor, as four bodies.
-const EXAMPLES: [(&str, f64); 13] = [
-    ("bottle_cap", SIX_DIGITS),
+/// And `bottle_cap`, whose thread takes CGAL most of a minute.
+const EXAMPLES: [(&str, f64); 12] = [
     ("box_with_lid", 1e-3),
     ("bracket", 1e-3),
     ("cable_clip", SIX_DIGITS),
