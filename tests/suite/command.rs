@@ -136,15 +136,6 @@ fn strings_from_outside_need_no_quotes() {
 }
 
 #[test]
-fn a_mistake_in_a_value_that_no_output_uses_is_told() {
-    let text = "part p = box(1, 1, 1)\npart q = box(2, 2, 2)\nx = 2mm + 30deg";
-    let folder = folder(&[("a.kata", text)]);
-    refused(folder.path(), &["build", "a.kata"], 1, "dimensions differ");
-    assert_eq!(names(&folder.path().join("out")), ["p.stl", "q.stl"]);
-    assert_eq!(code(&run(folder.path(), &["measure", "a.kata", "-p", "p"])), 0);
-}
-
-#[test]
 fn syntax_errors_leave_the_rest_of_the_file() {
     let text = "part a = box(1, 1, 1)\npart b = box(1, 2,\nx = 3 +\npart c = box(2, 2, 2)\n\
                 y = [1, 2\nz = ) 4\npart d = a + c";

@@ -297,7 +297,7 @@ fn parameters_are_checked() {
         ("q", "30", "its parameters are `width`, `style`"),
         ("style", "\"lop\"", "it must be in [\"lip\", \"flat\"]"),
         ("style", "3", "the parameter `style` is \"3\"; it must be in"),
-        ("width", "3 +", "syntax"),
+        ("width", "3 +", "nothing follows `+`"),
         ("width", "zz", "unknown name `zz`"),
     ] {
         let words = with(name, value);
