@@ -87,7 +87,7 @@ impl Geometry for Realizer<'_> {
     }
 
     fn text_width(&self, text: &TextSpec) -> Result<f64, GeometryError> {
-        figure::text(self, text).map(|text| text.width)
+        figure::text(self, text, self.tolerance()).map(|text| text.width)
     }
 
     fn import(&self, file: &str) -> Result<Imported, GeometryError> {

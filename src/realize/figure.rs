@@ -1,6 +1,9 @@
 //! Plane figures: profiles made into regions, each with the frame of its plane.
 
-use std::sync::Arc;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+};
 
 use glam::DAffine2;
 
@@ -10,10 +13,11 @@ use super::{
     import,
     paint::Paint,
     plane,
+    structure::figure_parts,
 };
 use crate::{
     base::{Code, Diagnostic},
-    geom::{Placement, Region, Tolerance, flatten::MOST_CHORDS, sides},
+    geom::{Contour, EdgeCurve, Placement, Region, Tolerance, flatten::MOST_CHORDS, sides},
     input,
     kernel::profile::{
         self, ProfileError,
@@ -60,11 +64,49 @@ impl Coded for ProfileError {
     }
 }
 
+/// Where the figures that another one is made from come from.
+type Parts<'a> = &'a dyn Fn(ShapeId) -> Made<Arc<Figure>>;
+
 /// Makes the figure of a profile node whose parts are made.
 pub fn make(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Made<Figure> {
+    build(realizer, graph, id, realizer.tolerance(), &|id| realizer.figure_made(id))
+}
+
+/// The figure of a profile for a solid that bends it once more, with the tolerance that is left for the
+/// bending: the two errors add up, so each gets half where the profile has curves.
+pub fn bent(
+    realizer: &Realizer,
+    graph: &ShapeGraph,
+    id: ShapeId,
+) -> Made<(Arc<Figure>, Tolerance)> {
+    let (figure, tolerance) = (realizer.figure_made(id)?, realizer.tolerance());
+    let straight = |contour: &Contour| contour.curves.iter().all(|c| *c == EdgeCurve::Line);
+    let half = Tolerance::new(tolerance.mm() / 2.0);
+    let Some(half) = half.filter(|_| !figure.region.contours().all(straight)) else {
+        return Ok((figure, tolerance));
+    };
+    let mut needed = BTreeSet::from([id]);
+    let mut open = vec![id];
+    while let Some(next) = open.pop() {
+        open.extend(figure_parts(graph.node(next)).into_iter().filter(|&part| needed.insert(part)));
+    }
+    let mut made: BTreeMap<ShapeId, Arc<Figure>> = BTreeMap::new();
+    for &next in &needed {
+        let figure = build(realizer, graph, next, half, &|id| Ok(made[&id].clone()))?;
+        made.insert(next, Arc::new(figure));
+    }
+    Ok((made[&id].clone(), half))
+}
+
+fn build(
+    realizer: &Realizer,
+    graph: &ShapeGraph,
+    id: ShapeId,
+    tolerance: Tolerance,
+    parts: Parts,
+) -> Made<Figure> {
     let origin = graph.origin(id);
-    let tolerance = realizer.tolerance();
-    let part = |id: &ShapeId| realizer.figure_made(*id);
+    let part = |id: &ShapeId| parts(*id);
     match graph.node(id) {
         Node::Rect { size } => profile::rect(*size).at(origin).map(Figure::flat),
         Node::Ellipse { radii, sides } => {
@@ -74,9 +116,9 @@ pub fn make(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Made<Figure
             let holes: Vec<_> = holes.iter().map(|hole| hole.to_vec()).collect();
             profile::polygon(points, &holes).at(origin).map(Figure::flat)
         }
-        Node::Text(spec) => {
-            text(realizer, spec).map_err(|e| placed(e, graph, id)).map(|t| Figure::flat(t.region))
-        }
+        Node::Text(spec) => text(realizer, spec, tolerance)
+            .map_err(|e| placed(e, graph, id))
+            .map(|t| Figure::flat(t.region)),
         Node::ImportProfile { file } => {
             let bytes = realizer.bytes(file).map_err(|e| placed(e, graph, id))?;
             let drawing = input::read_profile(file, &bytes, tolerance);
@@ -107,11 +149,11 @@ pub fn make(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Made<Figure
             let paint = figure.paint.within(&Paint::default().painted(*color));
             Ok(Figure { paint, ..Figure::clone(&figure) })
         }
-        Node::Union(list) => combined(realizer, graph, list, profile::union),
-        Node::Difference(list) => combined(realizer, graph, list, profile::difference),
-        Node::Intersection(list) => combined(realizer, graph, list, profile::intersection),
+        Node::Union(list) => combined(parts, graph, list, profile::union),
+        Node::Difference(list) => combined(parts, graph, list, profile::difference),
+        Node::Intersection(list) => combined(parts, graph, list, profile::intersection),
         Node::Hull(list) => {
-            let joined = combined(realizer, graph, list, profile::union)?;
+            let joined = combined(parts, graph, list, profile::union)?;
             let points: Vec<_> =
                 joined.region.contours().flat_map(|c| c.points.iter().copied()).collect();
             Ok(joined.with_region(profile::hull(&points).at(origin)?))
@@ -154,13 +196,12 @@ pub fn flattened(graph: &ShapeGraph, id: ShapeId) -> GeometryError {
 
 /// Set algebra of figures in one plane, in the frame of the first one. A paint holds where all agree.
 fn combined(
-    realizer: &Realizer,
+    parts: Parts,
     graph: &ShapeGraph,
     list: &[ShapeId],
     algebra: fn(&[Region]) -> Region,
 ) -> Made<Figure> {
-    let figures: Vec<Arc<Figure>> =
-        list.iter().map(|&id| realizer.figure_made(id)).collect::<Result<_, _>>()?;
+    let figures: Vec<Arc<Figure>> = list.iter().map(|&id| parts(id)).collect::<Result<_, _>>()?;
     let Some(leader) = figures.iter().position(|f| !f.region.is_empty()) else {
         return Ok(Figure::flat(Region::default()));
     };
@@ -201,7 +242,7 @@ pub fn placed(mut error: GeometryError, graph: &ShapeGraph, id: ShapeId) -> Geom
 }
 
 /// A text as the profile kernel sets it. The error has no place yet.
-pub fn text(realizer: &Realizer, spec: &TextSpec) -> Made<Text> {
+pub fn text(realizer: &Realizer, spec: &TextSpec, tolerance: Tolerance) -> Made<Text> {
     let font = spec.font.as_ref().map(|file| realizer.bytes(file)).transpose()?;
     let options = TextOptions {
         size: spec.size,
@@ -216,7 +257,7 @@ pub fn text(realizer: &Realizer, spec: &TextSpec) -> Made<Text> {
             VerticalAlign::Baseline => Baseline::Baseline,
             VerticalAlign::Bottom => Baseline::Bottom,
         },
-        tolerance: realizer.tolerance(),
+        tolerance,
     };
     profile::text::text(&spec.text, &options, font.as_ref().map(|bytes| &bytes[..])).unplaced()
 }

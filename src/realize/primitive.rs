@@ -71,12 +71,18 @@ pub fn make(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Made<Polyhe
         }
         Node::Polyhedron { points, faces } => faces::polyhedron(points, faces).at(origin),
         Node::Extrude { profile, height, twist, scale } => {
-            let figure = realizer.figure_made(*profile)?;
+            let (figure, tolerance) = match *twist {
+                0.0 => (realizer.figure_made(*profile)?, tolerance),
+                _ => figure::bent(realizer, graph, *profile)?,
+            };
             let solid = extrude(&figure.region, *height, *twist, *scale, tolerance).at(origin)?;
             Ok(painted(solid, &figure.paint).placed(&figure.frame))
         }
         Node::Revolve { profile, angle, sides } => {
-            let figure = realizer.figure_made(*profile)?;
+            let (figure, tolerance) = match sides {
+                Some(_) => (realizer.figure_made(*profile)?, tolerance),
+                None => figure::bent(realizer, graph, *profile)?,
+            };
             let region = upright(&figure);
             let solid = revolve(&region, *angle, *sides, tolerance).at(origin)?;
             Ok(painted(solid, &figure.paint))

@@ -173,7 +173,7 @@ impl Structure {
 }
 
 /// The profiles a profile is made from.
-fn figure_parts(node: &Node) -> Vec<ShapeId> {
+pub fn figure_parts(node: &Node) -> Vec<ShapeId> {
     match node {
         Node::Union(list)
         | Node::Difference(list)

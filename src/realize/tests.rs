@@ -140,3 +140,23 @@ fn flat_and_endless_shapes_are_refused() {
     let ball = bench.add(Node::Sphere { r: 1.0, sides: Some(1_000_000) });
     assert_eq!(bench.code(ball), Code::Limit);
 }
+
+/// A circle of radius 5 about (20, 0) becomes a torus: no point of its mesh may be farther from the true
+/// one than the tolerance, though both the circle and its way around are made of chords.
+#[test]
+fn a_curve_that_is_bent_again_keeps_the_tolerance() {
+    let mut bench = Bench::new();
+    let circle = bench.add(Node::Ellipse { radii: DVec2::splat(5.0), sides: None });
+    let profile = bench.moved(circle, DVec3::X * 20.0);
+    let ring = bench.add(Node::Revolve { profile, angle: 360.0, sides: None });
+    let solid = bench.realizer.solid(&bench.graph, ring).expect("made");
+    let mesh = solid.polyhedron.mesh();
+    let error = |p: DVec3| (DVec2::new(p.truncate().length() - 20.0, p.z).length() - 5.0).abs();
+    let triangles = crate::geom::triangulate::triangulate(mesh);
+    let middles = triangles.corners.iter().flat_map(|corners| {
+        let [a, b, c] = corners.map(|corner| mesh.points[corner as usize]);
+        [(a + b) / 2.0, (b + c) / 2.0, (c + a) / 2.0, (a + b + c) / 3.0]
+    });
+    let worst = middles.map(error).fold(0.0, f64::max);
+    assert!(worst <= bench.realizer.tolerance().mm(), "{worst}");
+}

@@ -119,6 +119,37 @@ fn wrong_use_ends_with_2() {
 }
 
 #[test]
+fn strings_from_outside_need_no_quotes() {
+    let text = "param style = \"lip\" in [\"lip\", \"flat\"]\nparam width = 2mm\n\
+                part p = box(width, 1, if style == \"lip\" { 1 } else { 2 })";
+    let folder = folder(&[("a.kata", text), ("w.json", "{\"width\": \"1.5in\"}")]);
+    let volume = |given: &str| {
+        let output = run(folder.path(), &["measure", "a.kata", "--json", "-D", given]);
+        let value: Value = serde_json::from_slice(&output.stdout).expect("only JSON");
+        value["parts"]["p"]["volume"].as_f64()
+    };
+    assert_eq!(volume("style=flat"), Some(4.0));
+    assert_eq!(volume("style=\"flat\""), Some(4.0));
+    assert_eq!(volume("@w.json"), Some(38.1));
+    let at = folder.path();
+    refused(at, &["measure", "a.kata", "-D", "style=round"], 1, "`style` is \"round\"");
+}
+
+#[test]
+fn syntax_errors_leave_the_rest_of_the_file() {
+    let text = "part a = box(1, 1, 1)\npart b = box(1, 2,\nx = 3 +\npart c = box(2, 2, 2)\n\
+                y = [1, 2\nz = ) 4\npart d = a + c";
+    let folder = folder(&[("a.kata", text)]);
+    let output = run(folder.path(), &["measure", "a.kata", "--json", "--diagnostics", "short"]);
+    assert_eq!(code(&output), 1);
+    let value: Value = serde_json::from_slice(&output.stdout).expect("only JSON");
+    let parts: Vec<&String> = value["parts"].as_object().expect("parts").keys().collect();
+    assert_eq!(parts, ["a", "c", "d"]);
+    let places: Vec<String> = err(&output).lines().map(|line| line[..10].to_string()).collect();
+    assert_eq!(places, ["a.kata:2:1", "a.kata:3:7", "a.kata:5:5", "a.kata:6:5"]);
+}
+
+#[test]
 fn parameters_from_outside_are_checked() {
     let text = "param width = 5mm in 1mm..9mm\npart p = box(width, 1, 1)";
     let folder =

@@ -8,7 +8,7 @@ fn the_tour_of_the_language() {
         r#"
 w = 40mm
 deep = 1.5in + 2
-assert near(deep, 40.1mm)
+assert deep == 40.1mm
 tilt = 30deg
 face = 100mm^2
 p = [10, 20, 5] + [0, 0, 1mm]
@@ -155,6 +155,20 @@ assert (0..3).map((x, i) => x * i) == [0, 1, 4, 9]
 assert [[3, "c"], [1, "a"], [1, "b"]].sort(key = p => p[0]).map(p => p[1]) == ["a", "b", "c"]
 fn typed(a: Length, b: List[Angle], c: Optional[Count] = NONE) -> Length = if c == NONE { a } else { a * c }
 assert typed(2, [30, 1turn]) == 2mm and typed(2, [], c = 3) == 6mm
+"#,
+    );
+}
+
+#[test]
+fn what_the_language_leaves_to_custom() {
+    holds(
+        r#"
+assert (9mm^2)^0.5 == 3mm and (8mm^3)^(1 / 3) == 2mm and 7cm == 0.07m
+assert (0..0.3 step 0.1)[-1] == 0.3
+assert max(1, 2mm, 3, 4, 5) == 5mm and min(6, 5, 4, 3, 2, 1) == 1
+assert all([true, true]) and not all([true, false]) and any([false, true]) and not any([])
+fn density(d) = mass(box(10, 10, 10), d)
+assert near(density(0.00124), 1.24) and near(density(1.24 / 1cm^3), 1.24)
 "#,
     );
 }
