@@ -337,7 +337,8 @@ fn a_200_mb_stl_is_read() {
 
 #[test]
 fn mistakes_that_no_output_uses_are_told_and_the_rest_is_made() {
-    let text = "a = cylinder(radius = 5, h = 2)\nv = volume(p)\npart p = box(1, 2, 3)\npart q = box(1, 2)";
+    let text =
+        "a = cylinder(radius = 5, h = 2)\nv = volume(p)\npart p = box(1, 2, 3)\npart q = box(1, 2)";
     let folder = folder(&[("m.kata", text)]);
     let at = folder.path();
     let lines = |arguments: &[&str]| {
@@ -357,7 +358,8 @@ fn mistakes_that_no_output_uses_are_told_and_the_rest_is_made() {
 
 #[test]
 fn a_failing_assert_is_told_once_however_many_outputs_there_are() {
-    let text = "part p = box(1, 2, 3)\npart q = p\nexport \"e.stl\" = q\nassert volume(p) > 7, \"thin\"";
+    let text =
+        "part p = box(1, 2, 3)\npart q = p\nexport \"e.stl\" = q\nassert volume(p) > 7, \"thin\"";
     let folder = folder(&[("m.kata", text)]);
     let output = run(folder.path(), &["build", "m.kata", "--diagnostics", "short"]);
     assert_eq!((code(&output), err(&output).lines().count()), (1, 1), "{}", err(&output));
@@ -371,9 +373,12 @@ fn outputs_of_one_file_are_refused_and_every_refusal_has_a_place() {
     let output = run(folder.path(), &["build", "m.kata", "--diagnostics", "short"]);
     let text = err(&output);
     assert_eq!((code(&output), text.lines().count()), (1, 4), "{text}");
-    for part in
-        ["m.kata:1:6: error[duplicate]", "m.kata:4:8: error[duplicate]", "m.kata:5:8", "m.kata:6:18"]
-    {
+    for part in [
+        "m.kata:1:6: error[duplicate]",
+        "m.kata:4:8: error[duplicate]",
+        "m.kata:5:8",
+        "m.kata:6:18",
+    ] {
         assert!(text.contains(part), "{part} is missing in\n{text}");
     }
     assert_eq!(names(&folder.path().join("out")), ["a.stl"]);
@@ -399,6 +404,31 @@ fn every_kind_of_error_is_a_line_of_json_when_asked_for() {
         let value: Value = serde_json::from_str(&text).expect("JSON");
         assert_eq!(value["code"], expected, "{arguments:?}");
         let placed = ["missing-argument"].contains(&expected);
-        assert_eq!(value["line"].is_u64() && value["column"].is_u64(), placed || arguments.contains(&"x=1"));
+        assert_eq!(
+            value["line"].is_u64() && value["column"].is_u64(),
+            placed || arguments.contains(&"x=1")
+        );
     }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_command_told_to_stop_leaves_no_part_of_a_file() {
+    let folder = folder(&[("m.kata", "part p = sphere(10, sides = 1500)")]);
+    let out = folder.path().join("out");
+    let mut command = katachi(&["build", "m.kata", "--format", "obj"]);
+    command.current_dir(folder.path()).stdout(Stdio::null()).stderr(Stdio::null());
+    let mut child = command.spawn().expect("starts");
+    // The temporary file appears, or else writing was too fast to be caught.
+    while names(&out).is_empty() && child.try_wait().expect("a child").is_none() {
+        std::thread::yield_now();
+    }
+    let mut kill = std::process::Command::new("kill");
+    kill.args(["-INT", &child.id().to_string()]).stderr(Stdio::null()).status().expect("kill");
+    let end = child.wait().expect("ends").code();
+    let left = names(&out);
+    assert!(
+        end == Some(130) && left.is_empty() || end == Some(0) && left == ["p.obj"],
+        "{end:?} {left:?}"
+    );
 }
