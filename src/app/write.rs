@@ -84,9 +84,7 @@ mod tests {
     #[test]
     fn nothing_is_written_outside_or_in_part() {
         let folder = tempfile::tempdir().expect("a temporary folder");
-        for name in
-            ["../a.stl", "/tmp/a.stl", "a/../../b.stl", "", "a\\b.stl", "a\n.stl", "a\0.stl"]
-        {
+        for name in ["../a.stl", "/a.stl", "a/../../b.stl", "", "a\\b.stl", "a\n.stl", "a\0.stl"] {
             assert!(write_whole(folder.path(), name, b"").is_err(), "{name}");
         }
         fs::create_dir(folder.path().join("taken.stl")).expect("writable");

@@ -2,7 +2,13 @@
 
 use std::fmt;
 
-use crate::syntax::ast::UnitName;
+use crate::syntax::{
+    ast::{Unit, UnitName},
+    number,
+};
+
+/// How far an exponent may be from a whole number and still count as it: 1/3 is not exact in binary.
+const WHOLE: f64 = 1e-12;
 
 /// length^i · angle^j. A bare number has both exponents 0.
 ///
@@ -51,6 +57,17 @@ impl Dimension {
     /// Of a whole power.
     pub fn power(self, exponent: i32) -> Option<Dimension> {
         let raise = |e: i8| i8::try_from(i32::from(e).checked_mul(exponent)?).ok();
+        Some(Dimension { length: raise(self.length)?, angle: raise(self.angle)? })
+    }
+
+    /// Of a power with a fraction; `None` when that leaves an exponent that is not whole.
+    pub fn broken_power(self, exponent: f64) -> Option<Dimension> {
+        let raise = |e: i8| {
+            let product = f64::from(e) * exponent;
+            let whole = product.round();
+            let fits = (product - whole).abs() <= WHOLE && whole.abs() <= f64::from(i8::MAX);
+            fits.then_some(whole as i8)
+        };
         Some(Dimension { length: raise(self.length)?, angle: raise(self.angle)? })
     }
 
@@ -137,6 +154,30 @@ pub fn unit_factor(unit: UnitName) -> (f64, Dimension) {
     }
 }
 
+/// A written number in millimetres and degrees, scaled in decimals; `None` when the exponent of its
+/// unit is too large.
+pub fn literal(value: f64, unit: Option<&Unit>) -> Option<(f64, Dimension)> {
+    let Some(unit) = unit else { return Some((value, Dimension::BARE)) };
+    let (factor, dimension) = unit_factor(unit.name);
+    let exponent = i32::from(unit.exponent);
+    let number = match exponent {
+        ..0 => value / libm::pow(factor, f64::from(-exponent)),
+        _ => (0..exponent).fold(value, |value, _| number::scaled(value, factor)),
+    };
+    Some((number, dimension.power(exponent)?))
+}
+
+/// A text that is one number, such as `-1.5in`; `None` for anything else.
+pub fn quantity(text: &str) -> Option<(f64, Dimension)> {
+    let digits = text.strip_prefix('-').unwrap_or(text);
+    let whole = digits.starts_with(|c: char| c.is_ascii_digit())
+        && number::measure(digits).end == digits.len();
+    let (value, unit) = number::read(whole.then_some(digits)?).ok()?;
+    let (number, dimension) = literal(value, unit.as_ref())?;
+    let sign = if digits.len() < text.len() { -1.0 } else { 1.0 };
+    number.is_finite().then_some((sign * number, dimension))
+}
+
 /// A unit as it is written.
 pub fn unit_text(unit: UnitName) -> &'static str {
     match unit {
@@ -149,5 +190,28 @@ pub fn unit_text(unit: UnitName) -> &'static str {
         UnitName::Deg => "deg",
         UnitName::Rad => "rad",
         UnitName::Turn => "turn",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_text_may_be_a_quantity() {
+        assert_eq!(quantity("-1.5in"), Some((-38.1, Dimension::LENGTH)));
+        assert_eq!(quantity("100mm^2"), Some((100.0, Dimension::AREA)));
+        assert_eq!(quantity("2"), Some((2.0, Dimension::BARE)));
+        for bad in ["", "-", "a", "5 mm", "5kg", "mm", "1..2", "5mm "] {
+            assert_eq!(quantity(bad), None, "{bad}");
+        }
+    }
+
+    #[test]
+    fn powers_with_a_fraction_need_whole_exponents() {
+        assert_eq!(Dimension::AREA.broken_power(0.5), Some(Dimension::LENGTH));
+        assert_eq!(Dimension::VOLUME.broken_power(1.0 / 3.0), Some(Dimension::LENGTH));
+        assert_eq!(Dimension::VOLUME.broken_power(0.5), None);
+        assert_eq!(Dimension::BARE.broken_power(1e300), Some(Dimension::BARE));
     }
 }

@@ -8,13 +8,14 @@ use std::{
 use rustc_hash::{FxHashMap, FxHashSet, FxHasher};
 
 use super::{
+    dimension::{Dimension, quantity},
     failure::{Failure, Outcome, fail},
     instance::{Given, Instance, InstanceId},
     library::{Index, LIBRARY},
     resolve::{resolve, resolve_library},
     testing::Running,
     types::shown,
-    unit::{GlobalKind, Unit},
+    unit::{GlobalKind, ParamKind, Unit, UseCode},
     value::Value,
 };
 use crate::{
@@ -75,6 +76,8 @@ pub enum Override {
     },
     /// A value from a JSON file.
     Data(Data),
+    /// A number with its dimension, in millimetres and degrees.
+    Quantity(f64, Dimension),
 }
 
 /// A call that is running.
@@ -171,7 +174,8 @@ impl<'h> Evaluator<'h> {
         let mut given = vec![];
         let mut refused = None;
         for (name, value) in overrides {
-            match self.override_value(name, value) {
+            let value = self.as_declared(&path, name, value);
+            match self.override_value(name, &value) {
                 Ok(value) => {
                     given.push(Given { name: name.as_str().into(), value: value.0, span: value.1 })
                 }
@@ -205,9 +209,25 @@ impl<'h> Evaluator<'h> {
         InstanceId(self.instances.iter().rposition(mine).unwrap_or(0) as u32)
     }
 
+    /// A value from outside as its parameter takes it: a string needs no quotes (`-D style=flat`), and
+    /// JSON, which has no units, may hold a number with its unit as a string.
+    fn as_declared(&self, path: &str, name: &str, given: &Override) -> Override {
+        let unit = self.units.get(path).cloned().flatten();
+        let kind = unit.and_then(|unit| unit.param_kind(name));
+        match (kind, given) {
+            (Some(ParamKind::Text), Override::Source { text, .. }) if !text.starts_with('"') => {
+                Override::Data(Data::Text(text.clone()))
+            }
+            (Some(ParamKind::Number), Override::Data(Data::Text(text))) => quantity(text)
+                .map_or_else(|| given.clone(), |(x, unit)| Override::Quantity(x, unit)),
+            _ => given.clone(),
+        }
+    }
+
     fn override_value(&mut self, name: &str, given: &Override) -> Outcome<(Value, Option<Span>)> {
         match given {
             Override::Data(data) => Ok((super::builtin::data_value(data), None)),
+            Override::Quantity(number, dimension) => Ok((Value::Number(*number, *dimension), None)),
             Override::Source { source, text } => {
                 let (program, diagnostics) = syntax::parse(*source, text);
                 if let Some(first) = diagnostics.into_iter().find(Diagnostic::is_error) {
@@ -275,21 +295,30 @@ impl<'h> Evaluator<'h> {
             _ => error,
         };
         let loaded = self.host.load(path).map_err(placed)?;
-        let (unit, diagnostics) = resolve(&loaded.program, path, &loaded.text, Index::get());
+        let (mut unit, diagnostics) = resolve(&loaded.program, path, &loaded.text, Index::get());
+        for error in loaded.diagnostics.iter().filter(|diagnostic| diagnostic.is_error()) {
+            unit.disable(error.span());
+        }
         for diagnostic in loaded.diagnostics.iter().cloned().chain(diagnostics) {
             self.record(diagnostic);
         }
         let unit = Arc::new(unit);
-        for used in &unit.uses {
-            let target = self.relative(&unit, &used.path, used.span)?;
-            let target = self.unit(&target, Some(used.span))?;
-            self.check_imports(&unit, &target, used);
-        }
-        Ok(unit)
+        let taken: Vec<Outcome<()>> = unit.uses.iter().map(|used| self.take(&unit, used)).collect();
+        let mut failures = taken.into_iter().filter_map(Result::err);
+        let last = failures.next();
+        failures.for_each(|failure| self.report(&failure));
+        last.map_or(Ok(unit), Err)
+    }
+
+    fn take(&mut self, unit: &Unit, used: &UseCode) -> Outcome<()> {
+        let target = self.relative(unit, &used.path, used.span)?;
+        let target = self.unit(&target, Some(used.span))?;
+        self.check_imports(unit, &target, used);
+        Ok(())
     }
 
     /// Names taken from a file must be there and open.
-    fn check_imports(&mut self, unit: &Unit, target: &Unit, used: &super::unit::UseCode) {
+    fn check_imports(&mut self, unit: &Unit, target: &Unit, used: &UseCode) {
         for global in &unit.globals {
             let GlobalKind::Imported(number, name) = &global.kind else { continue };
             let here = std::ptr::eq(&unit.uses[*number as usize], used);

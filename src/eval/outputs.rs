@@ -195,7 +195,7 @@ impl Evaluator<'_> {
         if let Some(number) = named {
             let at = unit.globals[number].name.span;
             let value = self.global(instance, number as u32, at)?;
-            return self.as_shape(&value, at)?.map_or_else(|| self.empty_solid(at), Ok);
+            return self.as_shape(&value, at)?.map_or_else(|| self.empty_solid(output, at), Ok);
         }
         let anonymous = unit.globals.iter().enumerate();
         let anonymous = anonymous.filter(|(_, global)| global.kind == GlobalKind::Anonymous);
@@ -214,7 +214,11 @@ impl Evaluator<'_> {
         .into())
     }
 
-    fn empty_solid(&mut self, at: Span) -> Outcome<ShapeId> {
+    /// What an output is whose list holds no shape.
+    fn empty_solid(&mut self, output: &str, at: Span) -> Outcome<ShapeId> {
+        let words = format!("`{output}` is empty: its list holds no shape");
+        let warning = Diagnostic::warning(Code::EmptyResult, words).label(at, "");
+        self.record(warning.help("`EMPTY` says so on purpose"));
         Ok(self.add_node(crate::shape::Node::Empty(crate::shape::Kind::Solid), at))
     }
 

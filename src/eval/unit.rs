@@ -184,6 +184,15 @@ impl Parameter {
     }
 }
 
+/// What a parameter takes.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum ParamKind {
+    /// A string.
+    Text,
+    /// A number of some dimension.
+    Number,
+}
+
 /// What a top-level name stands for.
 #[derive(Clone, PartialEq, Debug)]
 pub enum GlobalKind {
@@ -288,6 +297,48 @@ impl Unit {
     /// The characters of a span of this file.
     pub fn slice(&self, span: Span) -> &str {
         self.text.get(span.start as usize..span.end as usize).unwrap_or("")
+    }
+
+    /// Takes the definition or assert around a syntax error out of use: what is left of it after
+    /// recovery is not what was meant.
+    pub fn disable(&mut self, error: Option<Span>) {
+        let Some(error) = error else { return };
+        let mut broken = vec![];
+        for global in &self.globals {
+            if let Some(value) = self.spans.get(global.value.0 as usize) {
+                let start = global.name.span.start.min(value.start);
+                if (start..value.end).contains(&error.start) {
+                    broken.push(global.value);
+                }
+            }
+        }
+        for assert in &self.asserts {
+            let span = self.span(assert.condition);
+            if (span.start..span.end).contains(&error.start) {
+                broken.push(assert.condition);
+            }
+        }
+        for code in broken {
+            self.code[code.0 as usize] = Code::Broken;
+        }
+    }
+
+    /// What a parameter is, as far as its declaration tells without evaluating it.
+    pub fn param_kind(&self, name: &str) -> Option<ParamKind> {
+        let number = *self.names.get(name)?;
+        let global = &self.globals[number as usize];
+        let GlobalKind::Param(_) = global.kind else { return None };
+        let default = self.code.get(global.value.0 as usize);
+        match (&global.ty, default) {
+            (Some(Type::String), _) => Some(ParamKind::Text),
+            (Some(Type::Number(_) | Type::Quantity | Type::Count), _) => Some(ParamKind::Number),
+            (None, Some(Code::Text(_) | Code::Constant(Value::Text(_)))) => Some(ParamKind::Text),
+            (
+                None,
+                Some(Code::Constant(Value::Number(..)) | Code::Binary(..) | Code::Negate(_)),
+            ) => Some(ParamKind::Number),
+            _ => None,
+        }
     }
 
     /// The file's name without folder and ending.

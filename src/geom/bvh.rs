@@ -82,6 +82,39 @@ impl Bvh {
         }
     }
 
+    /// A value for each box of the tree, by its number: of one item by `of`, of a group by `joined`.
+    pub fn gathered<T: Copy + Default>(
+        &self,
+        of: impl Fn(u32) -> T,
+        joined: impl Fn(&T, &T) -> T,
+    ) -> Vec<T> {
+        let mut values = vec![T::default(); self.nodes.len()];
+        for (leaf, items) in self.items.chunks(LEAF).enumerate() {
+            let group = items.iter().map(|&i| of(i)).reduce(|a, b| joined(&a, &b));
+            values[self.leaves() + leaf] = group.unwrap_or_default();
+        }
+        for i in (1..self.leaves()).rev() {
+            values[i] = joined(&values[2 * i], &values[2 * i + 1]);
+        }
+        values
+    }
+
+    /// Goes down from the root: past a box where `done` says so of its number and the box, else to its
+    /// parts, and at the bottom to `item`. In a fixed order.
+    pub fn descend(&self, mut done: impl FnMut(usize, &Bounds) -> bool, mut item: impl FnMut(u32)) {
+        let mut open = vec![1];
+        while let Some(node) = open.pop() {
+            if self.nodes[node].is_empty() || done(node, &self.nodes[node]) {
+                continue;
+            }
+            if self.is_leaf(node) {
+                self.leaf(node).for_each(|k| item(self.items[k]));
+            } else {
+                open.extend([2 * node + 1, 2 * node]);
+            }
+        }
+    }
+
     /// The items whose boxes meet `query`, in increasing order.
     pub fn overlapping(&self, query: &Bounds) -> Vec<u32> {
         let mut items = vec![];

@@ -6,28 +6,15 @@
 
 use glam::DVec2;
 
-use super::Tolerance;
+use super::{Tolerance, sides};
 
 /// The most chords one curve is drawn with, whatever the tolerance says.
 pub const MOST_CHORDS: u32 = 1 << 14;
 
-/// The number of chords a full circle of radius `radius` (mm) needs: a multiple of 4, so that the
-/// four extreme points are corners, from 8 to [`MOST_CHORDS`].
-///
-/// ```
-/// use katachi::geom::{Tolerance, flatten::circle_chords};
-/// assert_eq!(circle_chords(10.0, Tolerance::DEFAULT), 32);
-/// ```
-pub fn circle_chords(radius: f64, tolerance: Tolerance) -> u32 {
-    let cosine = 1.0 - tolerance.mm() / radius.abs();
-    let half = if cosine > 0.0 { libm::acos(cosine) } else { std::f64::consts::FRAC_PI_2 };
-    let least = (std::f64::consts::PI / half).ceil().clamp(8.0, f64::from(MOST_CHORDS));
-    (least as u32).next_multiple_of(4)
-}
-
-/// The number of chords an arc of `radius` (mm) over `angle` (radians, any sign) needs; at least 1.
+/// The number of chords an arc of `radius` (mm) over `angle` (radians, any sign) needs: a share of those of
+/// the full circle, which are [`MOST_CHORDS`] at most; at least 1.
 pub fn arc_chords(radius: f64, angle: f64, tolerance: Tolerance) -> u32 {
-    let whole = f64::from(circle_chords(radius, tolerance));
+    let whole = f64::from(sides::circle(radius, tolerance).min(MOST_CHORDS));
     // A turn divided evenly must not cost one chord more for the rounding of the angle.
     const SLACK: f64 = 1e-9;
     (whole * angle.abs() / std::f64::consts::TAU - SLACK).ceil().max(1.0) as u32
@@ -65,15 +52,6 @@ mod tests {
     use glam::dvec2;
 
     use super::*;
-
-    #[test]
-    fn chords_stay_within_the_tolerance() {
-        for radius in [0.01, 1.0, 10.0, 1000.0] {
-            let n = f64::from(circle_chords(radius, Tolerance::DEFAULT));
-            let sagitta = radius * (1.0 - libm::cos(std::f64::consts::PI / n));
-            assert!(sagitta <= 0.05, "{radius} {n}");
-        }
-    }
 
     #[test]
     fn a_cubic_ends_where_it_ends() {

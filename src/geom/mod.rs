@@ -12,6 +12,7 @@ pub mod parity;
 pub mod placement;
 pub mod predicates;
 pub mod region;
+pub mod sides;
 pub mod spherical_projection;
 pub mod sum;
 pub mod surface;

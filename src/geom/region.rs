@@ -29,7 +29,27 @@ pub enum EdgeCurve {
     Smooth(u32),
 }
 
+/// An edge of a contour.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Edge {
+    /// Where it starts, mm.
+    pub from: DVec2,
+    /// Where it ends, mm.
+    pub to: DVec2,
+    /// The curve it stands for.
+    pub curve: EdgeCurve,
+}
+
 impl Contour {
+    /// Its edges in order, the first from the first point.
+    pub fn edges(&self) -> impl Iterator<Item = Edge> + '_ {
+        let next = self.points.iter().cycle().skip(1);
+        self.points.iter().zip(next).enumerate().map(|(i, (&from, &to))| {
+            let curve = self.curves.get(i).copied().unwrap_or(EdgeCurve::Line);
+            Edge { from, to, curve }
+        })
+    }
+
     /// A contour of straight edges.
     pub fn polygon(points: Vec<DVec2>) -> Contour {
         let curves = vec![EdgeCurve::Line; points.len()];

@@ -14,6 +14,11 @@ impl Tolerance {
         (mm.is_finite() && mm > 0.0).then_some(Tolerance(mm))
     }
 
+    /// Half of it, where two errors add.
+    pub fn half(self) -> Tolerance {
+        Tolerance((self.0 / 2.0).max(f64::MIN_POSITIVE))
+    }
+
     /// The allowed chord error in millimetres.
     pub const fn mm(self) -> f64 {
         self.0

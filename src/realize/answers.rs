@@ -7,7 +7,10 @@ use glam::DVec3;
 use super::{Realizer, failure::failure, figure, import, measure};
 use crate::{
     base::{Code, Diagnostic, FileError},
-    geom::{Tolerance, spherical_projection},
+    geom::{
+        Tolerance,
+        spherical_projection::{Projection, solid_angle},
+    },
     input,
     kernel::brep::distance,
     shape::{
@@ -43,12 +46,14 @@ impl Geometry for Realizer<'_> {
         point: DVec3,
         by: InsideMethod,
     ) -> Result<bool, GeometryError> {
-        let solid = self.solid(graph, shape)?;
-        match by {
-            InsideMethod::Sphere => {
-                Ok(spherical_projection::inside(solid.polyhedron.mesh(), point))
-            }
+        let InsideMethod::Sphere = by;
+        if let Some(boundary) = self.projections.get(&shape) {
+            return Ok(boundary.inside(point));
         }
+        let solid = self.solid(graph, shape)?;
+        let boundary = Arc::new(Projection::new(solid.polyhedron.mesh()));
+        self.projections.extend([(shape, boundary.clone())]);
+        Ok(boundary.inside(point))
     }
 
     fn solid_angle(
@@ -58,7 +63,7 @@ impl Geometry for Realizer<'_> {
         point: DVec3,
     ) -> Result<f64, GeometryError> {
         let solid = self.solid(graph, shape)?;
-        Ok(spherical_projection::solid_angle(solid.polyhedron.mesh(), point))
+        Ok(solid_angle(solid.polyhedron.mesh(), point))
     }
 
     fn distance_to_point(

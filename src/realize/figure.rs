@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     base::{Code, Diagnostic},
-    geom::{Placement, Region},
+    geom::{Placement, Region, Tolerance, flatten::MOST_CHORDS, sides},
     input,
     kernel::profile::{
         self, ProfileError,
@@ -54,6 +54,7 @@ impl Coded for ProfileError {
             }
             ProfileError::Font { .. } | ProfileError::Glyph { .. } => Code::BadFile,
             ProfileError::LongText { .. } => Code::Limit,
+            ProfileError::Sides { sides } if *sides > profile::MOST_SIDES => Code::Limit,
             _ => Code::Degenerate,
         }
     }
@@ -85,10 +86,12 @@ pub fn make(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Made<Figure
         }
         Node::OffsetProfile { profile, d } => {
             let figure = part(profile)?;
+            check_arcs(graph, id, *d, tolerance)?;
             Ok(figure.with_region(profile::offset(&figure.region, *d, tolerance)))
         }
         Node::RoundProfile { profile, r } => {
             let figure = part(profile)?;
+            check_arcs(graph, id, *r, tolerance)?;
             Ok(figure.with_region(profile::round(&figure.region, *r, tolerance)))
         }
         Node::Transform { placement, child } => {
@@ -115,6 +118,20 @@ pub fn make(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Made<Figure
         }
         _ => Ok(Figure::flat(Region::default())),
     }
+}
+
+/// Refuses arcs that need more chords than are made.
+fn check_arcs(graph: &ShapeGraph, id: ShapeId, radius: f64, tolerance: Tolerance) -> Made<()> {
+    let needed = sides::circle(radius, tolerance);
+    if needed <= MOST_CHORDS {
+        return Ok(());
+    }
+    let words = format!(
+        "a circle of {}mm needs {needed} chords at this tolerance; the limit is {MOST_CHORDS}",
+        radius.abs()
+    );
+    let diagnostic = Diagnostic::error(Code::Limit, words).label(graph.origin(id), "");
+    Err(failure(diagnostic.help("give a larger tolerance")))
 }
 
 /// The figure after a placement; `None` where that flattens it.

@@ -37,7 +37,7 @@ use self::{
 };
 use crate::{
     base::{Code, Diagnostic, Phase, Watch, World, watch::during},
-    geom::{Placement, Tolerance},
+    geom::{Placement, Tolerance, spherical_projection::Projection},
     kernel::brep::Polyhedron,
     shape::{Kind, Measures, Node, ShapeGraph, ShapeId},
 };
@@ -55,6 +55,8 @@ pub struct Realizer<'w> {
     entries: Entries,
     files: Store<String, Arc<Vec<u8>>>,
     measures: Store<ShapeId, Arc<Measures>>,
+    /// Boundaries that were asked about, made ready for more questions.
+    projections: Store<ShapeId, Arc<Projection>>,
     /// What readers left out, by the node that asked.
     remarks: Mutex<BTreeMap<ShapeId, Diagnostic>>,
 }
@@ -71,6 +73,7 @@ impl<'w> Realizer<'w> {
             entries: Store::default(),
             files: Store::default(),
             measures: Store::default(),
+            projections: Store::default(),
             remarks: Mutex::default(),
         }
     }

@@ -11,13 +11,13 @@ use super::{
 };
 use crate::{
     base::{Code, Diagnostic},
-    geom::Region,
+    geom::{Region, sides as count},
     kernel::brep::{
         Polyhedron,
         extrude::{ExtrudeError, extrude},
         faces::{self, FacesError},
         hull::{HullError, hull},
-        primitive::{self, circle_sides, sphere_sides, torus_sides},
+        primitive,
         revolve::{RevolveError, revolve},
     },
     shape::{Kind, Node, ShapeGraph, ShapeId},
@@ -37,7 +37,10 @@ impl Coded for ExtrudeError {
 
 impl Coded for RevolveError {
     fn code(&self) -> Code {
-        Code::Degenerate
+        match self {
+            RevolveError::TooManyFacets(_) => Code::Limit,
+            _ => Code::Degenerate,
+        }
     }
 }
 
@@ -54,18 +57,18 @@ pub fn make(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Made<Polyhe
     match graph.node(id) {
         Node::Box { min, max } => Ok(primitive::cuboid(*min, *max)),
         Node::Cone { r1, r2, h, sides } => {
-            let sides = sides.unwrap_or_else(|| circle_sides(r1.max(*r2), tolerance));
+            let sides = sides.unwrap_or_else(|| count::circle(r1.max(*r2), tolerance));
             check_size(graph, id, 4 * sides as usize)?;
             Ok(primitive::cone(*r1, *r2, *h, sides))
         }
         Node::Sphere { r, sides } => {
-            let sides = sides.unwrap_or_else(|| sphere_sides(*r, tolerance));
-            check_size(graph, id, squared(sides, sides))?;
+            let sides = sides.unwrap_or_else(|| count::sphere(*r, tolerance));
+            check_size(graph, id, squared(sides, sides.div_ceil(2)).saturating_mul(2))?;
             Ok(primitive::sphere(*r, sides))
         }
         Node::Torus { major, minor, sides } => {
             let both = sides.map(|n| (n, n));
-            let (around, tube) = both.unwrap_or_else(|| torus_sides(*major, *minor, tolerance));
+            let (around, tube) = both.unwrap_or_else(|| count::torus(*major, *minor, tolerance));
             check_size(graph, id, squared(around, tube).saturating_mul(2))?;
             Ok(primitive::torus(*major, *minor, around, tube))
         }
@@ -77,7 +80,6 @@ pub fn make(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Made<Polyhe
         }
         Node::Revolve { profile, angle, sides } => {
             let figure = realizer.figure_made(*profile)?;
-            check_size(graph, id, sides.unwrap_or(0) as usize)?;
             let region = upright(&figure);
             let solid = revolve(&region, *angle, *sides, tolerance).at(origin)?;
             Ok(painted(solid, &figure.paint))

@@ -4,6 +4,8 @@
 //! operator, `=`, `,`, `.`, `=>` or `..`, or the next line starts with `.`, `else`, `and`, `or`, or
 //! with `step`, `when`, `in` or `with` that no `=` follows, or with an infix operator followed by a
 //! space. It does not count at the start and end of a file, behind `{` and before `}` either.
+//!
+//! A line that ends too early (`x = 3 +`) does not swallow a statement that plainly begins below it.
 
 use super::token::{Token, TokenSet, Tokens};
 
@@ -18,6 +20,23 @@ const OPEN_ENDED: TokenSet = TokenSet::OPERATORS.or(TokenSet::of(&[
 
 /// A line that starts with one of these goes on from the line before.
 const CONTINUING: TokenSet = TokenSet::of(&[Token::Dot, Token::Else, Token::And, Token::Or]);
+
+/// Words that begin an item when a name or string follows.
+const ITEM_WORDS: TokenSet = TokenSet::of(&[
+    Token::Part,
+    Token::View,
+    Token::Shade,
+    Token::Sheet,
+    Token::Param,
+    Token::Use,
+    Token::Set,
+    Token::Test,
+    Token::Export,
+    Token::Group,
+    Token::Assert,
+    Token::Pub,
+    Token::Fn,
+]);
 
 /// So does one that starts with one of these, if no `=` follows.
 const CONTINUING_WORDS: TokenSet =
@@ -72,8 +91,11 @@ fn ends_statement(
     if innermost.is_some_and(|open| *open != Token::LBrace) {
         return false;
     }
-    if matches!(before, Token::LBrace | Token::Newline) || OPEN_ENDED.has(before) {
+    if matches!(before, Token::LBrace | Token::Newline) {
         return false;
+    }
+    if OPEN_ENDED.has(before) {
+        return before != Token::Comma && begins_statement(tokens, index + 1);
     }
     !continues(text, tokens, index + 1)
 }
@@ -88,6 +110,16 @@ fn continues(text: &str, tokens: &Tokens, index: usize) -> bool {
         return tokens.get(index + 1) != Some(Token::Assign);
     }
     TokenSet::OPERATORS.has(kind) && space_follows(text, tokens.spans[index].1)
+}
+
+/// Whether what starts with this token can be nothing but a statement of its own.
+fn begins_statement(tokens: &Tokens, index: usize) -> bool {
+    let (Some(first), Some(second)) = (tokens.get(index), tokens.get(index + 1)) else {
+        return false;
+    };
+    let binding = TokenSet::NAMES.has(first) && second == Token::Assign;
+    let word = TokenSet::NAMES.has(second) && !CONTINUING_WORDS.has(second);
+    binding || ITEM_WORDS.has(first) && (word || second == Token::StringStart)
 }
 
 fn space_follows(text: &str, at: u32) -> bool {
@@ -136,6 +168,24 @@ mod tests {
             ("/// doc\na = 1\n/// at the end", 2),
         ] {
             assert_eq!(statements(text), count, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn a_line_that_ends_too_early_swallows_no_statement() {
+        for text in [
+            "a = 1 +\nb = 2",
+            "a =\nb = 2",
+            "a =\n\n// c\npart b = 2",
+            "a = b.\nparam c = 2",
+            "a = x =>\nfn f() = 1",
+            "a = 1 *\nassert b",
+            "a = 1 *\nexport \"a.stl\" = b",
+        ] {
+            assert_eq!(statements(text), 2, "{text:?}");
+        }
+        for text in ["a = 1 +\nb == 2", "a = 0 ..\npart step 2", "a = 1 +\nview(b)", "a,\nb = 2"] {
+            assert_eq!(statements(text), 1, "{text:?}");
         }
     }
 

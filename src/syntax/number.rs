@@ -15,6 +15,27 @@ pub const UNITS: &[(&str, UnitName)] = &[
     ("turn", UnitName::Turn),
 ];
 
+/// `value * factor` as if the decimals of both were multiplied before the one rounding: 1.5 inches are
+/// 38.1 mm, where the product of the two binary numbers is 38.099999999999994.
+///
+/// ```
+/// assert_eq!(katachi::syntax::number::scaled(1.5, 25.4), 38.1);
+/// ```
+pub fn scaled(value: f64, factor: f64) -> f64 {
+    let exact = |number: f64| {
+        let text = format!("{number:e}");
+        let (digits, exponent) = text.split_once('e')?;
+        let fraction = digits.split_once('.').map_or(0, |(_, fraction)| fraction.len());
+        let whole: i128 = digits.replace('.', "").parse().ok()?;
+        Some((whole, exponent.parse::<i32>().ok()? - i32::try_from(fraction).ok()?))
+    };
+    let product = || {
+        let ((a, p), (b, q)) = (exact(value)?, exact(factor)?);
+        format!("{}e{}", a.checked_mul(b)?, p + q).parse().ok()
+    };
+    product().unwrap_or(value * factor)
+}
+
 /// What is wrong with a number.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum NumberFault {
@@ -169,6 +190,24 @@ mod tests {
         ] {
             assert_eq!(measure(text).end, end, "{text}");
         }
+    }
+
+    #[test]
+    fn units_are_multiplied_in_decimals() {
+        for (value, factor, product) in [
+            (1.5, 25.4, 38.1),
+            (0.07, 1000.0, 70.0),
+            (1.1, 10.0, 11.0),
+            (0.3, 360.0, 108.0),
+            (2.5, 25.4 * 25.4, 1612.9),
+            (7.0, 0.001, 0.007),
+            (0.0, 25.4, 0.0),
+            (1e308, 1e3, f64::INFINITY),
+            (1e-300, 0.001, 1e-303),
+        ] {
+            assert_eq!(scaled(value, factor), product, "{value} * {factor}");
+        }
+        assert!(scaled(2.0, f64::NAN).is_nan());
     }
 
     #[test]

@@ -328,6 +328,16 @@ impl TokenSet {
         Token::Fn,
     ]);
 
+    /// The infix operators that compare.
+    pub const COMPARISONS: TokenSet = TokenSet::of(&[
+        Token::Equal,
+        Token::NotEqual,
+        Token::Less,
+        Token::LessEqual,
+        Token::Greater,
+        Token::GreaterEqual,
+    ]);
+
     /// The infix operators.
     pub const OPERATORS: TokenSet = TokenSet::of(&[
         Token::DotDot,
@@ -340,15 +350,10 @@ impl TokenSet {
         Token::Percent,
         Token::Ampersand,
         Token::Caret,
-        Token::Equal,
-        Token::NotEqual,
-        Token::Less,
-        Token::LessEqual,
-        Token::Greater,
-        Token::GreaterEqual,
         Token::And,
         Token::Or,
-    ]);
+    ])
+    .or(TokenSet::COMPARISONS);
 
     /// What an expression can begin with.
     pub const STARTS: TokenSet = TokenSet::of(&[

@@ -1,20 +1,33 @@
 //! Every example builds, is closed and is measured, and its tests pass.
 
-use std::{fs, path::Path};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 use serde_json::Value;
 
 use super::errors::run;
 
-#[test]
-fn every_example_builds_is_closed_and_is_measured() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let entries = fs::read_dir(root.join("examples")).expect("examples are there");
+/// The folder of the examples.
+pub fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("examples")
+}
+
+/// File names of all examples, sorted.
+pub fn models() -> Vec<String> {
+    let entries = fs::read_dir(folder()).expect("examples are there");
     let names = entries.map(|e| e.expect("readable").file_name().to_string_lossy().into_owned());
     let mut models: Vec<String> = names.filter(|name| name.ends_with(".kata")).collect();
     models.sort();
     assert!(models.len() >= 10, "only {} examples", models.len());
-    let faults: Vec<String> = models.iter().flat_map(|name| faults(root, name)).collect();
+    models
+}
+
+#[test]
+fn every_example_builds_is_closed_and_is_measured() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let faults: Vec<String> = models().iter().flat_map(|name| faults(root, name)).collect();
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 

@@ -5,3 +5,5 @@ mod properties;
 mod random;
 mod solids;
 mod tiny;
+
+pub use random::Random;

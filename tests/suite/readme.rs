@@ -49,7 +49,8 @@ fn what_it_links_to_exists() {
 fn the_gate_runs_the_very_test_command_it_gives() {
     let commands = blocks("sh")[0];
     let gate = include_str!("../../.ci/run");
-    let test = commands.lines().find(|line| line.starts_with("cargo test")).expect("a test command");
+    let test =
+        commands.lines().find(|line| line.starts_with("cargo test")).expect("a test command");
     let test = test.split('#').next().unwrap_or("").trim();
     assert!(gate.lines().any(|line| line.trim() == test), "{test}");
     assert!(commands.contains("examples/bracket.kata"));

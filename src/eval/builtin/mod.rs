@@ -151,7 +151,7 @@ impl Args<'_> {
             n if n <= MOST => Ok(Some(n)),
             n => {
                 let message = format!("`{}` is at most {MOST}, got {n}", self.name(i));
-                self.fail(i, Code::OutOfRange, message)
+                self.fail(i, Code::Limit, message)
             }
         }
     }

@@ -133,12 +133,12 @@ impl Evaluator<'_> {
             return fail(Code::Dimension, at.right, words);
         }
         let whole = b.fract() == 0.0 && b.abs() <= 1e6;
-        if x != Dimension::BARE && !whole {
-            let words = format!("{} can only be raised to a whole power", x.words());
+        if !whole && x.broken_power(b).is_none() {
+            let words = format!("{} to the power {b} has no dimension", x.words());
             let error = Diagnostic::error(Code::Dimension, words)
                 .label(at.right, "")
                 .label(at.left, x.words());
-            return Err(error.help("use `sqrt` for a square root").into());
+            return Err(error.help("the exponents of a dimension are whole numbers").into());
         }
         if a < 0.0 && b.fract() != 0.0 {
             let words = "a negative number has no power with a fraction";
@@ -149,7 +149,7 @@ impl Evaluator<'_> {
         }
         let value =
             if whole && b.abs() <= 64.0 { whole_power(a, b as i32) } else { libm::pow(a, b) };
-        match x.power(if whole { b as i32 } else { 0 }) {
+        match if whole { x.power(b as i32) } else { x.broken_power(b) } {
             Some(dimension) if value.is_finite() => Ok(Value::Number(value, dimension)),
             Some(_) => overflow(at.whole),
             None => fail(Code::Dimension, at.whole, "the exponent of a dimension is too large"),

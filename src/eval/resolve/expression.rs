@@ -4,7 +4,7 @@ use super::{Resolver, function::Ending};
 use crate::{
     base::{self, Diagnostic, Span},
     eval::{
-        dimension::{unit_factor, unit_text},
+        dimension::{literal, unit_factor, unit_text},
         stack::deep,
         unit::{
             ArgumentCode, BinderCode, CallCode, Code, CodeId, ForCode, MethodCode, RangeCode,
@@ -70,18 +70,9 @@ impl Resolver<'_> {
     }
 
     fn number(&mut self, value: f64, unit: Option<&ast::Unit>, span: Span) -> CodeId {
-        let number = match unit {
-            None => Some(Value::bare(value)),
-            Some(unit) => {
-                let (factor, dimension) = unit_factor(unit.name);
-                let exponent = i32::from(unit.exponent);
-                let number = value * libm::pow(factor, f64::from(exponent));
-                dimension.power(exponent).map(|dimension| Value::Number(number, dimension))
-            }
-        };
-        match number {
-            Some(number @ Value::Number(value, _)) if value.is_finite() => {
-                self.constant(number, span)
+        match literal(value, unit) {
+            Some((number, dimension)) if number.is_finite() => {
+                self.constant(Value::Number(number, dimension), span)
             }
             _ => {
                 let error = Diagnostic::error(base::Code::BadToken, "this number is too large")

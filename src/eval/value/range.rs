@@ -45,9 +45,14 @@ impl Range {
         self.count
     }
 
-    /// The element at an index below [`count`](Range::count).
+    /// The element at an index below [`count`](Range::count). The last one of a range that reaches its
+    /// bound is the bound itself, not what the steps have drifted to.
     pub fn element(&self, index: u64) -> Value {
-        Value::Number(self.start + index as f64 * self.step, self.dimension)
+        let number = self.start + index as f64 * self.step;
+        let last = self.inclusive && index + 1 == self.count;
+        let at_end =
+            last && (number - self.end).abs() <= WHOLE * self.step.abs() * self.count as f64;
+        Value::Number(if at_end { self.end } else { number }, self.dimension)
     }
 
     /// Whether `x` lies between the bounds, and on a step where one is written.
@@ -91,6 +96,20 @@ mod tests {
         assert_eq!(Range::new(0.0, 0.0, None, 1.0, false).count(), 0);
         assert_eq!(Range::new(0.0, 2.5, None, 1.0, true).count(), 3);
         assert_eq!(Range::new(-1e308, 1e308, None, 1.0, true).count(), u64::MAX);
+    }
+
+    #[test]
+    fn the_last_element_is_the_bound() {
+        let last = |end: f64, step: f64| {
+            let range = Range::new(0.0, end, Some(step), 1.0, true);
+            match range.element(range.count() - 1) {
+                Value::Number(number, _) => number,
+                other => panic!("{other:?}"),
+            }
+        };
+        assert_eq!(last(0.3, 0.1), 0.3);
+        assert_eq!(last(-0.3, -0.1), -0.3);
+        assert_eq!(last(1.0, 0.3), 0.3 * 3.0);
     }
 
     #[test]

@@ -158,16 +158,10 @@ mod tests {
             let result = union(&contours);
             assert_eq!(result.contours().count(), 1, "{angle}");
             assert!((result.area() - 217.8).abs() < 1e-9);
-            let shortest = edges(&result).map(|(p, q)| p.distance(q)).fold(9.0, f64::min);
+            let shortest = result.contours().flat_map(Contour::edges);
+            let shortest = shortest.map(|e| e.from.distance(e.to)).fold(9.0, f64::min);
             assert!(shortest > 1.0, "{angle}: {shortest}");
         }
-    }
-
-    fn edges(region: &Region) -> impl Iterator<Item = (DVec2, DVec2)> {
-        region.contours().flat_map(|c| {
-            let next = c.points.iter().cycle().skip(1);
-            c.points.iter().copied().zip(next.copied())
-        })
     }
 
     #[test]

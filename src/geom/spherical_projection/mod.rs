@@ -11,7 +11,7 @@
 //! | n_j | `n` in [`spherical_polygon`] | normal of the plane through Q, P_j, P_j+1 |
 //! | theta_j | pi - [`turn`] | angle of the spherical polygon at P_j |
 //! | s | [`spherical_polygon`] | area of the spherical polygon: sum of theta_j - (n - 2) pi |
-//! | front, back | [`side`] | a face counts positive when Q sees its back |
+//! | front, back | `View::side` | a face counts positive when Q sees its back |
 //! | the sum of all s | [`solid_angle`] | 4 pi inside, 0 outside; decided at 2 pi |
 //!
 //! # Departures
@@ -21,28 +21,34 @@
 //! - Holes are loops of their own that count against the face.
 //! - Triangles take the form of A. van Oosterom and J. Strackee, *The Solid Angle of a Plane Triangle*,
 //!   1983, which needs one atan2 and is exact for small ones.
+//! - The polygon form takes turns from the directions of edges. An edge of the length of rounding has none, a
+//!   face bent by rounding has no inside where Q is as near to its plane as it is bent, and a turn of half a
+//!   circle has no sign: each can be off by 2 pi. The form is the default all the same, because it is the
+//!   paper's and needs no triangulation; faces that are so (`view`) are summed over their
+//!   triangles, whose sum is right wherever Q is off the triangles, however they are bent.
+//! - [`Projection`] answers many questions about one solid: triangles near Q one by one, the others by a
+//!   far-field expansion (G. Barill, N. Dickson, R. Schmidt, D. Levin, A. Jacobson, *Fast Winding Numbers for
+//!   Soups and Clouds*, 2018).
 //! - A face whose plane holds Q counts 0: then a point on a face sees 2 pi, on an edge the angle of its two
 //!   faces (twice the dihedral angle), at a corner the corner's solid angle.
 //!   "Holds" means within rounding, [`ON_PLANE`].
 //! - [`inside`] counts points of the boundary as inside, so it asks whether one of those faces has Q on it.
 
+mod projection;
+mod view;
+
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
-use super::{
-    mesh::{FaceRef, PolyMesh},
-    sum::Sum,
-    triangulate::triangulate_face,
-};
+pub use projection::Projection;
+
+use self::view::View;
+use super::{mesh::PolyMesh, sum::Sum};
 
 /// Distances below this many times the largest coordinate are rounding: four units in the last place
 /// for the corners of the plane, as many for the point.
 const ON_PLANE: f64 = 8.0 * f64::EPSILON;
-
-/// Areas this near to 2 pi take their sign from the side of the face: far above the rounding of a sum of
-/// angles, far below what a point off the plane can be mistaken by.
-const NEAR_HALF: f64 = 1e-6;
 
 /// The solid angle in steradians under which the boundary is seen from a point, faces counting positive
 /// from behind: 4 pi inside a closed mesh and 0 outside, 2 pi on a face. A mesh that is not closed gives
@@ -57,7 +63,7 @@ const NEAR_HALF: f64 = 1e-6;
 /// assert!((solid_angle(&cube, dvec3(1.0, 1.0, 1.0)) - 0.5 * pi).abs() < 1e-12);
 /// ```
 pub fn solid_angle(mesh: &PolyMesh, q: DVec3) -> f64 {
-    mesh.faces().map(|face| face_area(mesh, face, q)).collect::<Sum>().value()
+    mesh.faces().map(|face| View::new(mesh, face, q).area()).collect::<Sum>().value()
 }
 
 /// Whether a point is in the solid that a closed mesh bounds; points of the boundary, up to rounding of
@@ -73,56 +79,29 @@ pub fn solid_angle(mesh: &PolyMesh, q: DVec3) -> f64 {
 pub fn inside(mesh: &PolyMesh, q: DVec3) -> bool {
     let mut sum = Sum::default();
     for face in mesh.faces() {
-        if side(mesh, face, q) == 0.0 && touches(mesh, face, q) {
+        let view = View::new(mesh, face, q);
+        if view.touches() {
             return true;
         }
-        sum.add(face_area(mesh, face, q));
+        sum.add(view.area());
     }
     sum.value() >= TAU
 }
 
-/// The signed area of one face on the unit sphere about `q`.
-fn face_area(mesh: &PolyMesh, face: FaceRef, q: DVec3) -> f64 {
-    let side = side(mesh, face, q);
-    if side == 0.0 {
+/// Whether a point lies on a triangle, up to rounding of the coordinates.
+fn is_on(triangle: [DVec3; 3], q: DVec3) -> bool {
+    let reach = triangle.iter().fold(q.abs(), |m, c| m.max(c.abs())).max_element();
+    super::nearest::on_triangle(triangle, q).distance(q) <= ON_PLANE * reach
+}
+
+/// The signed area of a triangle on the unit sphere about `q`; 0 where its plane holds `q` up to rounding.
+fn triangle_area(triangle: [DVec3; 3], q: DVec3) -> f64 {
+    let [a, b, c] = triangle;
+    let height = (a - q).dot((b - a).cross(c - a).normalize_or_zero());
+    if height.abs() <= ON_PLANE * a.abs().max(q.abs()).max_element() {
         return 0.0;
     }
-    let seen = |&c: &u32| mesh.points[c as usize] - q;
-    if let [a, b, c] = face.outer()
-        && face.loops().len() == 1
-    {
-        return spherical_triangle([a, b, c].map(seen));
-    }
-    let mut corners = vec![];
-    let areas = face.loops().enumerate().map(|(i, indices)| {
-        corners.clear();
-        corners.extend(indices.iter().map(seen));
-        let area = spherical_polygon(&corners);
-        let sign = if i == 0 { side.signum() } else { -side.signum() };
-        if area.abs() > TAU - NEAR_HALF { sign * area.abs() } else { area }
-    });
-    areas.sum()
-}
-
-/// Height of the face's plane over `q`, positive when Q sees the back; 0 within rounding.
-fn side(mesh: &PolyMesh, face: FaceRef, q: DVec3) -> f64 {
-    let base = mesh.points[face.outer()[0] as usize];
-    let normal = face.area_vector().normalize_or_zero();
-    let height = (base - q).dot(normal);
-    let reach = base.abs().max(q.abs()).max_element();
-    if height.abs() <= ON_PLANE * reach { 0.0 } else { height }
-}
-
-/// Whether `q` lies on a face within rounding.
-fn touches(mesh: &PolyMesh, face: FaceRef, q: DVec3) -> bool {
-    let loops: Vec<&[u32]> = face.loops().collect();
-    let mut triangles = vec![];
-    triangulate_face(&mesh.points, &loops, &mut triangles);
-    triangles.iter().any(|t| {
-        let corners = t.map(|c| mesh.points[c as usize]);
-        let reach = corners.iter().fold(q.abs(), |m, c| m.max(c.abs())).max_element();
-        super::nearest::on_triangle(corners, q).distance(q) <= ON_PLANE * reach
-    })
+    spherical_triangle(triangle.map(|p| p - q))
 }
 
 /// The signed area of a spherical polygon, given its corners as seen from the centre (not on the sphere
@@ -136,17 +115,24 @@ fn touches(mesh: &PolyMesh, face: FaceRef, q: DVec3) -> bool {
 /// assert!((spherical_polygon(&octant) - std::f64::consts::PI / 2.0).abs() < 1e-15);
 /// ```
 pub fn spherical_polygon(corners: &[DVec3]) -> f64 {
+    excess(corners).0
+}
+
+/// The area of [`spherical_polygon`], and the largest turn at a corner, without its sign.
+fn excess(corners: &[DVec3]) -> (f64, f64) {
     let n = corners.len();
     let normal = |j: usize| corners[j % n].cross(corners[(j + 1) % n]);
-    let mut before = normal(n - 1);
-    let turns = (0..n).map(|j| {
+    let (mut turned, mut sharpest, mut before) = (Sum::default(), 0.0f64, normal(n - 1));
+    for (j, corner) in corners.iter().enumerate() {
         let after = normal(j);
-        let angle = turn(before, after, corners[j]);
+        if let Some(angle) = turn(before, after, *corner) {
+            turned.add(angle);
+            sharpest = sharpest.max(angle.abs());
+        }
         before = after;
-        angle
-    });
-    let area = TAU - turns.flatten().collect::<Sum>().value();
-    area - 2.0 * TAU * ((area - TAU) / (2.0 * TAU)).ceil()
+    }
+    let area = TAU - turned.value();
+    (area - 2.0 * TAU * ((area - TAU) / (2.0 * TAU)).ceil(), sharpest)
 }
 
 /// The signed turn at a corner: the angle between the planes before and after it. `None` where an edge

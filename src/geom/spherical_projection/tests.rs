@@ -118,6 +118,7 @@ fn agrees_with_exact_ray_parity() {
     let mut seed = 11;
     let mut asked = 0;
     for mesh in solids() {
+        let projection = Projection::new(&mesh);
         let corners = triangulate(&mesh).corners;
         let triangles: Vec<[Whole; 3]> =
             corners.iter().map(|t| t.map(|c| whole(mesh.points[c as usize]))).collect();
@@ -126,6 +127,7 @@ fn agrees_with_exact_ray_parity() {
             let Some(wanted) = parity(&triangles, q.map(i128::from)) else { continue };
             let q = DVec3::from_array(q.map(|v| v as f64)) / UNITS as f64;
             assert_eq!(inside(&mesh, q), wanted, "{q}");
+            assert_eq!(projection.inside(q), wanted, "{q} by the expansion");
             asked += 1;
         }
     }
@@ -168,6 +170,7 @@ fn on_the_boundary() {
     for (q, wanted) in cases {
         assert!((solid_angle(&frame, q) - wanted).abs() < 1e-12, "{q}");
         assert_eq!(inside(&frame, q), wanted > 0.0, "{q}");
+        assert_eq!(Projection::new(&frame).inside(q), wanted > 0.0, "{q}");
         let (moved, q) = (frame.placed(&placement), placement.point(q));
         assert!((solid_angle(&moved, q) - wanted).abs() < 1e-9, "{q} turned");
         assert_eq!(inside(&moved, q), wanted > 0.0, "{q} turned");
@@ -191,5 +194,60 @@ fn very_close_to_a_face() {
         let angle = |z: f64| solid_angle(&cube, dvec3(0.3, 0.6, z));
         assert!((angle(1.0 - gap) - 4.0 * PI).abs() < 1e-9, "{gap}");
         assert!(angle(1.0 + gap).abs() < 1e-9, "{gap}");
+    }
+}
+
+/// A box whose roof has three more corners, 7e-9 mm from one of its own, in an order that curls, each
+/// pushed off the plane.
+fn curled() -> PolyMesh {
+    let near = 7e-9;
+    let corner = [[10., 0.], [10., 10.], [10. - near, 10. + near], [10. + near, 10. - near]];
+    let corner = [&corner[..], &[[10., 10. + near], [0., 10.], [0., 0.]]].concat();
+    let mut mesh = prism(&[corner], 10.0);
+    mesh.points.iter_mut().zip(0..).for_each(|(p, i)| p.z += near * f64::from(i % 3));
+    mesh
+}
+
+#[test]
+fn corners_that_rounding_brings_together_change_nothing() {
+    let mesh = curled();
+    let (projection, turn) = (Projection::new(&mesh), DQuat::from_xyzw(0.1, 0.7, -0.3, 0.6));
+    let placement = Placement::new(glam::DMat3::from_quat(turn.normalize()), dvec3(3., 4., 5.));
+    let moved = mesh.placed(&placement);
+    let mut seed = 7;
+    for _ in 0..20_000 {
+        let q = DVec3::from_array(std::array::from_fn(|_| random(&mut seed) as f64)) / 5e6 - 1.5;
+        let wanted = q.cmpgt(DVec3::ZERO).all() && q.cmplt(DVec3::splat(10.0)).all();
+        assert_eq!(inside(&mesh, q), wanted, "{q}");
+        assert_eq!(projection.inside(q), wanted, "{q} by the expansion");
+        assert_eq!(inside(&moved, placement.point(q)), wanted, "{q} turned");
+    }
+}
+
+#[test]
+fn near_the_plane_of_a_bent_face() {
+    let mesh = curled();
+    for gap in [1e-3, 1e-6, 1e-7] {
+        for (x, y) in [(3.3, 4.4), (9.999, 9.999), (11.0, 10.0), (10.0, 12.0), (-4.0, 10.0)] {
+            for (z, within) in [(10.0 + gap, false), (10.0 - gap, x > 0.0 && x < 10.0)] {
+                let q = dvec3(x, y, z);
+                let within = within && y < 10.0;
+                assert_eq!(inside(&mesh, q), within, "{q}");
+                assert_eq!(Projection::new(&mesh).inside(q), within, "{q} by the expansion");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_expansion_of_a_fine_drum() {
+    let rim = (0..2000).map(|i| <[f64; 2]>::from(unit_circle(2000, i) * 5.0)).collect();
+    let (mesh, mut seed) = (prism(&[rim], 4.0), 3);
+    let projection = Projection::new(&mesh);
+    for i in 0..1000 {
+        let q = DVec3::from_array(std::array::from_fn(|_| random(&mut seed) as f64)) / 6.7e6 - 5.0;
+        // One in two close to the surface.
+        let q = if i % 2 == 0 { q } else { q.with_z(0.0).normalize() * 4.995 + DVec3::Z };
+        assert_eq!(projection.inside(q), solid_angle(&mesh, q) > TAU, "{q}");
     }
 }

@@ -6,13 +6,14 @@ use thiserror::Error;
 use super::{
     Polyhedron,
     band::add_point,
-    flank::{Edge, Origins, edges, encloses, lines},
+    flank::{Origins, encloses, lines},
     primitive::cone_surface,
     ridge::roof,
 };
 use crate::geom::{
     Contour, PolyMesh, Region, Surface, Tolerance,
-    region::{EdgeCurve, Piece},
+    region::{Edge, EdgeCurve, Piece},
+    sides,
     trig::{cos_deg, sin_deg},
 };
 
@@ -133,29 +134,15 @@ impl Rise {
         self.twist == 0.0 && (self.scale.x == self.scale.y || along_axis)
     }
 
-    /// Slices for which no facet is off by more than the tolerance. Two errors add: corners run along
-    /// helices (square of the angle between slices), and a facet between two skew edges is split into two
-    /// triangles that leave the ruled surface by a quarter of the edges' difference across (linear).
+    /// Slices for which no facet is off by more than the tolerance.
     fn slices(&self, region: &Region, tolerance: Tolerance) -> Result<u32, ExtrudeError> {
-        let angle = self.twist.abs().to_radians();
-        let grown = self.scale.max_element().max(1.0);
-        let mut helix = 0.0f64;
-        let mut skew = 0.0f64;
-        for e in region.contours().flat_map(edges) {
-            let along = e.to - e.from;
-            let length = along.length();
-            let shear = (self.scale.x - self.scale.y).abs() * (along.x * along.y).abs() / length;
-            helix = helix.max(e.from.length() * grown * angle * angle / 8.0);
-            skew = skew.max((length * grown * angle + shear) / 4.0);
-        }
-        let mm = tolerance.mm();
-        let slices = ((skew + (skew * skew + 4.0 * mm * helix).sqrt()) / (2.0 * mm)).ceil();
+        let slices = sides::slices(region, self.twist, self.scale, tolerance);
         let corners = region.contours().map(|c| c.points.len()).sum::<usize>();
         let most = MAX_SLICES.min(MAX_FACETS / corners as u32).max(1);
         if slices > f64::from(most) {
             return Err(ExtrudeError::TooManySlices(slices, most));
         }
-        Ok((slices as u32).max(1))
+        Ok(slices as u32)
     }
 
     /// The place of a corner at the share t of the height.
@@ -232,7 +219,7 @@ impl Drawing {
     }
 
     fn flanks(&mut self, contour: &Contour, lines: &[u32], rings: &[Vec<u32>]) {
-        for (i, e) in edges(contour).enumerate() {
+        for (i, e) in contour.edges().enumerate() {
             let origin = self.origins.of(&mut self.mesh, e.curve, self.rise.surface(&e));
             let flat = self.rise.keeps_flat(&e).then(|| self.planes[lines[i] as usize]);
             let next = (i + 1) % contour.points.len();

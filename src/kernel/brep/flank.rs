@@ -3,10 +3,10 @@
 
 use std::collections::BTreeMap;
 
-use glam::DVec2;
-
 use crate::geom::{
-    Contour, Origin, PolyMesh, Region, Surface, orient::orient2d, region::EdgeCurve,
+    Contour, Origin, PolyMesh, Region, Surface,
+    orient::orient2d,
+    region::{Edge, EdgeCurve},
 };
 
 /// A curve as a key: edges of one circle or one smooth curve share it.
@@ -46,27 +46,6 @@ impl Origins {
     }
 }
 
-/// An edge of a region.
-#[derive(Clone, Copy)]
-pub(super) struct Edge {
-    /// Where it starts.
-    pub(super) from: DVec2,
-    /// Where it ends.
-    pub(super) to: DVec2,
-    /// The curve it stands for.
-    pub(super) curve: EdgeCurve,
-}
-
-/// The edges of a contour in order.
-pub(super) fn edges(contour: &Contour) -> impl Iterator<Item = Edge> + '_ {
-    let n = contour.points.len();
-    (0..n).map(move |i| Edge {
-        from: contour.points[i],
-        to: contour.points[(i + 1) % n],
-        curve: contour.curves.get(i).copied().unwrap_or(EdgeCurve::Line),
-    })
-}
-
 /// Whether every contour of a region, which has at least one, has three corners, all finite.
 pub(super) fn encloses(region: &Region) -> bool {
     let sound = |c: &Contour| c.points.len() > 2 && c.points.iter().all(|p| p.is_finite());
@@ -80,7 +59,7 @@ const NEARLY_ONE_LINE: f64 = 1e-9;
 /// For each edge of the region, in order of its contours, a number that edges on one line with one
 /// direction share.
 pub(super) fn lines(region: &Region) -> Vec<u32> {
-    let all: Vec<Edge> = region.contours().flat_map(edges).collect();
+    let all: Vec<Edge> = region.contours().flat_map(Contour::edges).collect();
     let reach = all.iter().map(|e| e.from.abs().max_element()).fold(f64::MIN_POSITIVE, f64::max);
     let rough = |e: &Edge| {
         let direction = (e.to - e.from).normalize_or_zero();

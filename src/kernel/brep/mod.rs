@@ -3,6 +3,7 @@
 mod band;
 pub mod boolean;
 mod closing;
+pub mod crossing;
 pub mod distance;
 pub mod extrude;
 pub mod faces;

@@ -8,19 +8,18 @@ use thiserror::Error;
 use super::{
     Polyhedron,
     band::{Ring, add_point, add_strip},
-    flank::{Edge, Origins, edges, encloses},
-    primitive::{circle_sides, cone_surface},
+    flank::{Origins, encloses},
+    primitive::cone_surface,
 };
 use crate::geom::{
     Contour, PolyMesh, Region, Surface, Tolerance,
-    region::EdgeCurve,
+    region::{Edge, EdgeCurve},
+    sides::turned,
     trig::{cos_deg, sin_deg, unit_circle},
 };
 
 /// The most facets that turning may make.
 pub const MAX_FACETS: usize = 8_000_000;
-/// The most sides of a full turn, whatever the profile.
-const MAX_SIDES: u32 = 1_000_000;
 
 /// Why there is no turned solid.
 #[derive(Clone, Copy, PartialEq, Debug, Error)]
@@ -46,8 +45,8 @@ pub enum RevolveError {
 /// the radius. Less than a full turn has two flat ends.
 ///
 /// `sides` are those of a full turn; of a part of it OpenSCAD's share is made, sides * angle / 360 rounded
-/// down, but facets enough that each turns less than half a turn. Without `sides` the facets keep within `tolerance` of the surface the region's edges
-/// sweep: half of it where the region has curved edges, whose own chords come on top.
+/// down, but facets enough that each turns less than half a turn. Without `sides` the facets keep within
+/// `tolerance` of the surface the region's edges sweep: half of it where the region has curved edges, whose own chords come on top.
 ///
 /// Fails for an empty region, one that reaches x < 0, and an angle beyond (0, 360].
 ///
@@ -66,9 +65,9 @@ pub fn revolve(
     tolerance: Tolerance,
 ) -> Result<Polyhedron, RevolveError> {
     check(region, angle, sides)?;
-    let directions = directions(region, angle, sides, tolerance);
+    let count = turned(region, angle, sides, tolerance);
     let corners = region.contours().map(|c| c.points.len()).sum::<usize>();
-    let facets = corners.saturating_mul(directions.len());
+    let facets = corners.saturating_mul(count as usize);
     if facets > MAX_FACETS {
         return Err(RevolveError::TooManyFacets(facets));
     }
@@ -76,7 +75,7 @@ pub fn revolve(
         mesh: PolyMesh::default(),
         origins: Origins::default(),
         levels: BTreeMap::new(),
-        directions,
+        directions: directions(count, angle),
         closed: angle == 360.0,
     };
     let ends = (!lathe.closed).then(|| [lathe.mesh.add_plane(), lathe.mesh.add_plane()]);
@@ -101,38 +100,18 @@ fn check(region: &Region, angle: f64, sides: Option<u32>) -> Result<(), RevolveE
     if let Some(few) = sides.filter(|&n| n < 3) {
         return Err(RevolveError::Sides(few));
     }
-    if let Some(many) = sides.filter(|&n| n > MAX_SIDES) {
-        return Err(RevolveError::TooManyFacets(many as usize));
-    }
     let beyond = region.contours().flat_map(|c| &c.points).filter(|p| p.x < 0.0);
     let farthest = beyond.min_by(|a, b| a.x.total_cmp(&b.x));
     farthest.map_or(Ok(()), |p| Err(RevolveError::BeyondAxis(*p)))
 }
 
 /// The directions of the stations about the axis; the last of a full turn is left out.
-fn directions(region: &Region, angle: f64, sides: Option<u32>, tolerance: Tolerance) -> Vec<DVec2> {
-    let radius = region.contours().flat_map(|c| &c.points).map(|p| p.x).fold(0.0, f64::max);
-    let curved = region.contours().flat_map(|c| &c.curves).any(|c| *c != EdgeCurve::Line);
-    let spent = if curved { tolerance.mm() / 2.0 } else { tolerance.mm() };
-    let fine = || circle_sides(radius, Tolerance::new(spent).unwrap_or(tolerance));
+fn directions(n: u32, angle: f64) -> Vec<DVec2> {
     if angle == 360.0 {
-        let n = sides.unwrap_or_else(fine);
         return (0..n).map(|i| unit_circle(n, i)).collect();
     }
-    let share = angle / 360.0;
-    let n = match sides {
-        Some(n) => (f64::from(n) * share).floor(),
-        None => (f64::from(fine()) * share).ceil(),
-    };
-    let n = n.max(least_for(angle)) as u32;
     let turn = |i: u32| angle * f64::from(i) / f64::from(n);
     (0..=n).map(|i| DVec2::new(cos_deg(turn(i)), sin_deg(turn(i)))).collect()
-}
-
-/// The least number of facets that turns by an angle: each must turn less than half a turn, or nothing
-/// would be enclosed.
-fn least_for(angle: f64) -> f64 {
-    (angle / 180.0).floor() + 1.0
 }
 
 /// A corner of the profile: its stations, as the edge before it and the edge after it see them.
@@ -160,7 +139,7 @@ impl Lathe {
                 self.corner(contour.points[i], self.closed && apex)
             })
             .collect();
-        for (i, e) in edges(contour).enumerate() {
+        for (i, e) in contour.edges().enumerate() {
             self.flank(&e, &corners[i].after, &corners[(i + 1) % n].before);
         }
         corners
@@ -283,6 +262,8 @@ mod tests {
         let part = turn(&TUBE, 100.0, 16);
         assert_eq!(part.mesh().points.len(), 20);
         assert_near(measure::volume(&part), 20.0 * 4.0 * sin_deg(25.0) / 2.0);
+        // 49 / 100 of a turn is 49 facets of 100, though the share is rounded.
+        assert_eq!(turn(&TUBE, 49.0 * 3.6, 100).mesh().points.len(), 4 * 50);
         let wedge = turn(&CONE, 90.0, 4);
         assert_near(measure::volume(&wedge), 7.5);
         assert_eq!(measure::euler(&wedge), 2);
@@ -308,6 +289,12 @@ mod tests {
         let torus = Surface::Torus { center: DVec3::Z, axis: DVec3::Z, major: 5.0, minor: 1.0 };
         assert!(solid.mesh().faces().all(|f| f.origin().surface == torus));
         assert_eq!(solid.mesh().origins().len(), 1);
+    }
+
+    #[test]
+    fn a_tolerance_beyond_use_is_refused_before_anything_is_made() {
+        let fault = revolve(&region(&TUBE), 360.0, None, Tolerance::new(1e-30).expect("positive"));
+        assert!(matches!(fault, Err(RevolveError::TooManyFacets(n)) if n > MAX_FACETS));
     }
 
     #[test]

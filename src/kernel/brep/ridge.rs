@@ -6,11 +6,7 @@
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
 
-use super::{
-    Polyhedron,
-    band::add_point,
-    flank::{Origins, edges},
-};
+use super::{Polyhedron, band::add_point, flank::Origins};
 use crate::geom::{Contour, PolyMesh, Region, Surface, Tolerance, region::EdgeCurve};
 
 /// Strips between two neighbouring corners, at most.
@@ -51,7 +47,8 @@ pub(super) fn roof(
         parts: vec![],
     };
     roof.levels = roof.strips(region, tolerance);
-    let count = region.contours().flat_map(edges).map(|e| roof.crossed(e.from, e.to).len() + 1);
+    let count =
+        region.contours().flat_map(Contour::edges).map(|e| roof.crossed(e.from, e.to).len() + 1);
     if count.sum::<usize>() > MOST_PARTS {
         return None;
     }
@@ -101,7 +98,7 @@ impl Roof {
         let mut levels: Vec<f64> = corners.map(|p| (self.along)(*p) + 0.0).collect();
         levels.sort_by(f64::total_cmp);
         levels.dedup();
-        let steepest = region.contours().flat_map(edges).map(|e| {
+        let steepest = region.contours().flat_map(Contour::edges).map(|e| {
             let d = e.to - e.from;
             (self.across)(d).abs() / d.length()
         });
@@ -128,7 +125,7 @@ impl Roof {
     fn split(&mut self, contour: &Contour) -> Vec<usize> {
         let first = self.parts.len();
         let start = self.mesh.points.len() as u32;
-        for e in edges(contour) {
+        for e in contour.edges() {
             let (a, b) = ((self.along)(e.from), (self.along)(e.to));
             let mut strips: Vec<Option<usize>> = self.crossed(e.from, e.to).map(Some).collect();
             if a == b {

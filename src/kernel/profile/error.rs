@@ -14,7 +14,7 @@ pub enum ProfileError {
         value: f64,
     },
     /// A regular polygon of too few or too many sides.
-    #[error("{sides} sides; 3 to {most} are needed", most = super::primitive::MOST_SIDES)]
+    #[error("{sides} sides; 3 to {most} are made", most = super::primitive::MOST_SIDES)]
     Sides {
         /// The number given.
         sides: u32,

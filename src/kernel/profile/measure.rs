@@ -4,13 +4,6 @@ use glam::{DVec2, dvec2};
 
 use crate::geom::{Contour, Region};
 
-/// The edges of a contour as pairs of corners.
-pub(super) fn edges(contour: &Contour) -> impl Iterator<Item = (DVec2, DVec2)> {
-    let points = &contour.points;
-    (0..points.len())
-        .map(move |i| (points[i], points[if i + 1 == points.len() { 0 } else { i + 1 }]))
-}
-
 /// Area in mm^2, holes left out.
 pub fn area(region: &Region) -> f64 {
     region.area()
@@ -24,7 +17,7 @@ pub fn area(region: &Region) -> f64 {
 /// assert_eq!(perimeter(&rect(dvec2(4.0, 3.0)).unwrap()), 14.0);
 /// ```
 pub fn perimeter(region: &Region) -> f64 {
-    region.contours().flat_map(edges).map(|(p, q)| p.distance(q)).sum()
+    region.contours().flat_map(Contour::edges).map(|e| e.from.distance(e.to)).sum()
 }
 
 /// The least and the greatest coordinates; `None` for the empty region.
@@ -38,8 +31,8 @@ pub fn bounds(region: &Region) -> Option<(DVec2, DVec2)> {
 pub fn centroid(region: &Region) -> Option<DVec2> {
     let base = reference(region)?;
     let mut sum = DVec2::ZERO;
-    for (p, q) in region.contours().flat_map(edges) {
-        let (p, q) = (p - base, q - base);
+    for e in region.contours().flat_map(Contour::edges) {
+        let (p, q) = (e.from - base, e.to - base);
         sum += (p + q) * p.perp_dot(q);
     }
     Some(base + sum / (6.0 * region.area()))
@@ -66,7 +59,7 @@ pub struct SecondMoments {
 pub fn second_moments(region: &Region) -> Option<SecondMoments> {
     let center = centroid(region)?;
     let (mut squares, mut product) = (DVec2::ZERO, 0.0);
-    for (p, q) in region.contours().flat_map(edges) {
+    for (p, q) in region.contours().flat_map(Contour::edges).map(|e| (e.from, e.to)) {
         let (p, q) = (p - center, q - center);
         let turn = p.perp_dot(q);
         squares += (p * p + p * q + q * q) * turn;

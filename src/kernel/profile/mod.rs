@@ -22,6 +22,6 @@ pub use hull::hull;
 pub use offset::offset;
 pub use place::{Affine, placed};
 pub use polygon::polygon;
-pub use primitive::{circle, ellipse, ngon, rect};
+pub use primitive::{MOST_SIDES, circle, ellipse, ngon, rect};
 pub use round::round;
 pub use text::{Align, Baseline, Text, TextOptions, text};

@@ -54,8 +54,7 @@ struct Strip {
 
 /// The closed way of one contour.
 fn moved(contour: &Contour, d: f64, tolerance: Tolerance) -> Contour {
-    let edges = super::measure::edges(contour).zip(&contour.curves);
-    let mut strips: Vec<Strip> = edges.map(|((a, b), curve)| strip(a, b, *curve, d)).collect();
+    let mut strips: Vec<Strip> = contour.edges().map(|e| strip(e.from, e.to, e.curve, d)).collect();
     let n = strips.len();
     for i in 0..n {
         let before = (i + n - 1) % n;
@@ -221,7 +220,7 @@ mod tests {
         let shrunk = offset(&plate, -3.0, tolerance);
         for contour in shrunk.contours() {
             for p in &contour.points {
-                let edges = plate.contours().flat_map(crate::kernel::profile::measure::edges);
+                let edges = plate.contours().flat_map(Contour::edges).map(|e| (e.from, e.to));
                 let near = edges.map(|(a, b)| distance_to_segment(*p, a, b));
                 let near = near.fold(f64::INFINITY, f64::min);
                 assert!((near - 3.0).abs() < 2e-4, "{p} {near}");
@@ -265,7 +264,7 @@ mod tests {
             let moved = offset(&figure, d, tolerance);
             for _ in 0..200 {
                 let p = DVec2::new(random(), random()) * 32.0 - 16.0;
-                let edges = figure.contours().flat_map(crate::kernel::profile::measure::edges);
+                let edges = figure.contours().flat_map(Contour::edges).map(|e| (e.from, e.to));
                 let near = edges.map(|(a, b)| distance_to_segment(p, a, b));
                 let near = near.fold(f64::INFINITY, f64::min);
                 let signed = if inside(&figure, p) { -near } else { near };
@@ -281,7 +280,7 @@ mod tests {
     }
 
     fn inside(region: &Region, p: DVec2) -> bool {
-        let edges = region.contours().flat_map(crate::kernel::profile::measure::edges);
+        let edges = region.contours().flat_map(Contour::edges).map(|e| (e.from, e.to));
         let crossed = edges.filter(|&(a, b)| {
             (a.y <= p.y) != (b.y <= p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)
         });

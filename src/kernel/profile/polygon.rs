@@ -251,7 +251,7 @@ fn check_holes(outer: &Contour, holes: &[Contour]) -> Result<(), ProfileError> {
 /// `inner` that is not on `outer`.
 fn holds(outer: &Contour, inner: &Contour) -> bool {
     let p = inner.points[0].midpoint(inner.points[1]);
-    let edges = super::measure::edges(outer);
+    let edges = outer.edges().map(|e| (e.from, e.to));
     let crossed = edges.filter(|&(a, b)| {
         let (low, high) = if a.y < b.y { (a, b) } else { (b, a) };
         low.y <= p.y && p.y < high.y && orientation(low, high, p) == Ordering::Greater

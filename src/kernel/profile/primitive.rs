@@ -3,7 +3,7 @@
 use glam::{DVec2, dvec2};
 
 use super::ProfileError;
-use crate::geom::{Contour, EdgeCurve, Piece, Region, Tolerance, flatten, trig};
+use crate::geom::{Contour, EdgeCurve, Piece, Region, Tolerance, sides as count, trig};
 
 /// The most sides a regular polygon may have.
 pub const MOST_SIDES: u32 = 1 << 20;
@@ -47,7 +47,7 @@ pub fn ellipse(
     tolerance: Tolerance,
 ) -> Result<Region, ProfileError> {
     let (rx, ry) = (length("the radius", radii.x)?, length("the radius", radii.y)?);
-    let chords = sides.unwrap_or_else(|| flatten::circle_chords(rx.max(ry), tolerance));
+    let chords = sides.unwrap_or_else(|| count::circle(rx.max(ry), tolerance));
     if !(3..=MOST_SIDES).contains(&chords) {
         return Err(ProfileError::Sides { sides: chords });
     }

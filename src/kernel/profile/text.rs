@@ -25,7 +25,7 @@ pub static LIBERATION_SANS: &[u8] =
 /// Ems for each millimetre of size.
 const EM: f64 = 100.0 / 72.0;
 
-/// How far letters advance, relative to what the font says.
+/// How far letters advance, and how high they count when they are aligned, relative to what the font says.
 const SPACING: f64 = 1000.0 / 1024.0;
 
 /// The most characters set in one piece.
@@ -43,17 +43,18 @@ pub enum Align {
     Right,
 }
 
-/// Where a line of text stands along y, by the ascent and descent of its font.
+/// Where a line of text stands along y, by how far its own letters rise and fall. As there the rise
+/// counts for [`SPACING`] of what it is, so a capital set at the top ends 0.2 mm above y = 0 at size 10.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
 pub enum Baseline {
     /// Letters stand on y = 0.
     #[default]
     Baseline,
-    /// The ascent ends at y = 0.
+    /// The upper edge is at y = 0.
     Top,
-    /// The middle between ascent and descent is at y = 0.
+    /// The middle between upper and lower edge is at y = 0.
     Center,
-    /// The descent ends at y = 0.
+    /// The lower edge is at y = 0; the base line when nothing lies below it.
     Bottom,
 }
 
@@ -116,7 +117,7 @@ pub fn text(text: &str, options: &TextOptions, font: Option<&[u8]>) -> Result<Te
     let scale = size * EM / units;
     let glyphs = shaped(&font, text)?;
     let width = glyphs.iter().map(|g| g.advance).sum::<f64>() * scale;
-    let shift = dvec2(shift_x(options.halign, width), shift_y(options.valign, &font) * scale);
+    let shift = dvec2(shift_x(options.halign, width), 0.0);
     let mut pen = Pen { outline: Outline::new(options.tolerance), origin: shift, scale };
     let outlines = font.outline_glyphs();
     let mut x = 0.0;
@@ -128,7 +129,9 @@ pub fn text(text: &str, options: &TextOptions, font: Option<&[u8]>) -> Result<Te
             .draw(&DrawOptions::default(), DrawMemory::Scratch, &mut pen)
             .map_err(|error| ProfileError::Font { reason: error.to_string() })?;
     }
-    let contours: Vec<Contour> = pen.outline.take();
+    let mut contours: Vec<Contour> = pen.outline.take();
+    let rise = shift_y(options.valign, &contours);
+    contours.iter_mut().flat_map(|contour| &mut contour.points).for_each(|point| point.y += rise);
     Ok(Text { region: overlay(&contours, [], Rule::Union, Fill::NonZero), width })
 }
 
@@ -187,17 +190,15 @@ fn shift_x(align: Align, width: f64) -> f64 {
     }
 }
 
-/// In font units.
-fn shift_y(align: Baseline, font: &Font) -> f64 {
-    let line = font.metrics().h_line();
-    let (ascent, descent) = line.map_or((f64::from(font.units_per_em()), 0.0), |line| {
-        (line.ascender.to_f64(), line.descender.to_f64())
-    });
+fn shift_y(align: Baseline, contours: &[Contour]) -> f64 {
+    let heights = || contours.iter().flat_map(|contour| &contour.points).map(|point| point.y);
+    let ascent = heights().fold(0.0, f64::max) * SPACING;
+    let descent = -heights().fold(0.0, f64::min) * SPACING;
     match align {
         Baseline::Baseline => 0.0,
         Baseline::Top => -ascent,
-        Baseline::Center => -(ascent + descent) / 2.0,
-        Baseline::Bottom => -descent,
+        Baseline::Center => (descent - ascent) / 2.0,
+        Baseline::Bottom => descent,
     }
 }
 
@@ -259,6 +260,22 @@ mod tests {
         assert!((left.width - 68.3336).abs() < 0.01, "{}", left.width);
         let right = set("AVATAR fig", Align::Right, Baseline::Top);
         assert!((bounds(&right.region).unwrap().1.x - (high.x - left.width)).abs() < 1e-9);
+    }
+
+    /// OpenSCAD 2021.01 with the same font: `valign` goes by the letters, not by the font's line.
+    #[test]
+    fn letters_align_by_their_own_edges() {
+        let edges = |s, valign| {
+            let (low, high) = bounds(&set(s, Align::Left, valign).region).unwrap();
+            (low.y, high.y)
+        };
+        let (foot, head) = edges("H", Baseline::Baseline);
+        assert_eq!(foot, 0.0);
+        assert!((edges("H", Baseline::Top).1 - head * (1.0 - SPACING)).abs() < 1e-9);
+        assert!((edges("H", Baseline::Center).1 - head * (1.0 - SPACING / 2.0)).abs() < 1e-9);
+        assert_eq!(edges("H", Baseline::Bottom).0, 0.0);
+        let (foot, _) = edges("g", Baseline::Baseline);
+        assert!((edges("g", Baseline::Bottom).0 - foot * (1.0 - SPACING)).abs() < 1e-9);
     }
 
     #[test]

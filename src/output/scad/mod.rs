@@ -25,7 +25,6 @@ use crate::{
     shape::{Node, ShapeGraph, ShapeId},
 };
 
-mod facets;
 mod plane;
 mod points;
 mod source;

@@ -2,9 +2,9 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{ScadError, Writer, children, facets, plane, points};
+use super::{ScadError, Writer, children, plane, points};
 use crate::{
-    geom::{Placement, Region, mesh::Color},
+    geom::{Placement, Region, mesh::Color, sides},
     output::number::Shortest,
     shape::{Node, ShapeId},
 };
@@ -105,7 +105,7 @@ impl Writer<'_> {
             Node::RoundProfile { r, .. } => (vec![-r, 2.0 * r, -r], r),
             _ => (vec![], 1.0),
         };
-        let sides = facets::circle(radius, self.tolerance);
+        let sides = sides::circle(radius, self.tolerance);
         steps.iter().map(|&r| format!("offset(r = {}, $fn = {sides})", Shortest(r))).collect()
     }
 
@@ -114,7 +114,7 @@ impl Writer<'_> {
     }
 
     fn circle_sides(&self, radius: f64, sides: Option<u32>) -> u32 {
-        sides.unwrap_or_else(|| facets::circle(radius, self.tolerance))
+        sides.unwrap_or_else(|| sides::circle(radius, self.tolerance))
     }
 
     fn extrusion(
@@ -127,7 +127,7 @@ impl Writer<'_> {
         let mut words = format!("linear_extrude(height = {}", Shortest(height));
         if twist != 0.0 || scale.x != scale.y {
             let region = self.region(profile, "extruded profile")?;
-            let slices = facets::slices(&region, twist, scale, self.tolerance);
+            let slices = sides::slices(&region, twist, scale, self.tolerance);
             words += &format!(", twist = {}, slices = {slices}", Shortest(-twist));
         }
         if scale != DVec2::ONE {
@@ -142,20 +142,14 @@ impl Writer<'_> {
         angle: f64,
         sides: Option<u32>,
     ) -> Result<Vec<String>, ScadError> {
-        let full = match sides {
-            Some(sides) => sides,
-            None => facets::turn(&self.region(profile, "revolved profile")?, self.tolerance),
-        };
+        let region = self.region(profile, "revolved profile")?;
+        let count = sides::turned(&region, angle, sides, self.tolerance);
         if angle == 360.0 {
             // A full turn starts at -x in OpenSCAD.
             let turn = "rotate([0, 0, 180])".to_string();
-            return Ok(vec![turn, format!("rotate_extrude($fn = {full}, convexity = 10)")]);
+            return Ok(vec![turn, format!("rotate_extrude($fn = {count}, convexity = 10)")]);
         }
-        let share = f64::from(full) * angle / 360.0;
-        let count = if sides.is_some() { share.floor() } else { share.ceil() };
-        // Each facet turns less than half a turn.
-        let count = count.max((angle / 180.0).floor() + 1.0) as u32;
-        let full = facets::full_turn(count, angle);
+        let full = sides::full_turn(count, angle);
         Ok(vec![format!(
             "rotate_extrude(angle = {}, $fn = {full}, convexity = 10)",
             Shortest(angle)
@@ -167,7 +161,7 @@ impl Writer<'_> {
             Node::Box { min, max } => cuboid(*min, *max),
             Node::Cone { r1, r2, h, sides } => self.cone(*r1, *r2, *h, *sides),
             Node::Sphere { r, sides } => {
-                let sides = sides.unwrap_or_else(|| facets::sphere(*r, self.tolerance));
+                let sides = sides.unwrap_or_else(|| sides::sphere(*r, self.tolerance));
                 format!("sphere(r = {}, $fn = {sides});", Shortest(*r))
             }
             Node::Torus { major, minor, sides } => self.torus(*major, *minor, *sides),
@@ -202,7 +196,7 @@ impl Writer<'_> {
     fn torus(&self, major: f64, minor: f64, sides: Option<u32>) -> String {
         let (long, short) = match sides {
             Some(sides) => (sides, sides),
-            None => facets::torus(major, minor, self.tolerance),
+            None => sides::torus(major, minor, self.tolerance),
         };
         format!(
             "rotate([0, 0, 180]) rotate_extrude($fn = {long}, convexity = 10) \

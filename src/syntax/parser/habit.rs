@@ -161,16 +161,8 @@ fn assignment(context: &Context<'_>, fault: &Fault) -> Option<Diagnostic> {
 
 /// `a < b < c`.
 fn chained_comparison(context: &Context<'_>, fault: &Fault) -> Option<Diagnostic> {
-    const SIGNS: TokenSet = TokenSet::of(&[
-        Token::Equal,
-        Token::NotEqual,
-        Token::Less,
-        Token::LessEqual,
-        Token::Greater,
-        Token::GreaterEqual,
-    ]);
-    let found = context.kind(fault.at).filter(|token| SIGNS.has(*token))?;
-    let first = context.nearest(fault.at, SIGNS)?;
+    let found = context.kind(fault.at).filter(|token| TokenSet::COMPARISONS.has(*token))?;
+    let first = context.nearest(fault.at, TokenSet::COMPARISONS)?;
     if fault.expected.has(found) {
         return None;
     }

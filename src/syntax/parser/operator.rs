@@ -1,12 +1,12 @@
 //! The operators, from `or` that binds loosest to `^` that binds tightest.
+//!
+//! The productions from `or` to `power` differ in their operators alone, so one function climbs
+//! through all of them: a combinator for each would be tried at every operand, and most operands have
+//! no operator behind them.
 
-use chumsky::prelude::*;
+use chumsky::{input::InputRef, prelude::*};
 
-use super::{
-    Boxed, Parse, Production,
-    atom::{take, token},
-    state::here,
-};
+use super::{Boxed, Extra, Fault, Input, Parse, Production, atom::take};
 use crate::{
     base::Span,
     syntax::{
@@ -14,6 +14,167 @@ use crate::{
         token::{Token, TokenSet},
     },
 };
+
+/// The productions by how tightly they bind.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Level {
+    /// or = and { "or" and }
+    Or,
+    /// and = not { "and" not }
+    And,
+    /// not = "not" not | cmp
+    Not,
+    /// cmp = range [ ("==" | "!=" | "<" | "<=" | ">" | ">=") range ]
+    Cmp,
+    /// range = sum [ (".." | "..<") sum [ "step" sum ] ]
+    Range,
+    /// sum = prod { ("+" | "-" | "++") prod }
+    Sum,
+    /// prod = unary { ("*" | "/" | "%" | "&") unary }
+    Prod,
+    /// unary = "-" unary | power
+    Unary,
+    /// power = postfix [ "^" unary ]
+    Power,
+}
+
+/// A level with infix operators: the operators, what stands right of one, and the tightest level
+/// whose operators may follow what it made (a comparison takes no second one).
+struct Infix {
+    level: Level,
+    production: Production,
+    operators: TokenSet,
+    right: Level,
+    next: Level,
+}
+
+const INFIX: [Infix; 7] = {
+    const OR: TokenSet = TokenSet::of(&[Token::Or]);
+    const AND: TokenSet = TokenSet::of(&[Token::And]);
+    const DOTS: TokenSet = TokenSet::of(&[Token::DotDot, Token::DotDotLess]);
+    const SUMS: TokenSet = TokenSet::of(&[Token::Plus, Token::Minus, Token::Join]);
+    const PRODUCTS: TokenSet =
+        TokenSet::of(&[Token::Star, Token::Slash, Token::Percent, Token::Ampersand]);
+    const CARET: TokenSet = TokenSet::of(&[Token::Caret]);
+    const fn infix(
+        level: Level,
+        production: Production,
+        operators: TokenSet,
+        right: Level,
+        next: Level,
+    ) -> Infix {
+        Infix { level, production, operators, right, next }
+    }
+    [
+        infix(Level::Or, Production::Or, OR, Level::And, Level::Or),
+        infix(Level::And, Production::And, AND, Level::Not, Level::And),
+        infix(Level::Cmp, Production::Cmp, TokenSet::COMPARISONS, Level::Range, Level::Not),
+        infix(Level::Range, Production::Range, DOTS, Level::Sum, Level::Cmp),
+        infix(Level::Sum, Production::Sum, SUMS, Level::Prod, Level::Sum),
+        infix(Level::Prod, Production::Prod, PRODUCTS, Level::Unary, Level::Prod),
+        infix(Level::Power, Production::Power, CARET, Level::Unary, Level::Unary),
+    ]
+};
+
+/// Where the parser is.
+type Reader<'s, 'p> = InputRef<'s, 'p, Input<'s>, Extra<'s>>;
+
+/// Room that one step of climbing may need on the stack, and what is added when there is less.
+const STACK: (usize, usize) = (64 << 10, 1 << 20);
+
+/// Everything from `or` to `power`, over operands of `postfix`.
+pub(super) fn or<'s>(postfix: impl Parse<'s, Expr>) -> Boxed<'s, Expr> {
+    let operand = postfix.or_not().boxed();
+    custom::<_, Input<'s>, _, Extra<'s>>(move |input| {
+        let at = *input.cursor().inner();
+        // What was expected has been noted by the operand, at the token where it stopped.
+        climb(input, &operand, Level::Or).ok_or(Fault { at, expected: TokenSet::EMPTY })
+    })
+    .boxed()
+}
+
+/// An expression of a level or a tighter one; `None`, with nothing read, where none begins.
+fn climb<'s>(
+    input: &mut Reader<'s, '_>,
+    operand: &Boxed<'s, Option<Expr>>,
+    floor: Level,
+) -> Option<Expr> {
+    stacker::maybe_grow(STACK.0, STACK.1, || {
+        let (mut left, mut ceiling) = prefix(input, operand, floor)?;
+        loop {
+            let before = input.save();
+            let Some((token, span)) = sign(input, operators(floor, ceiling)) else {
+                return Some(left);
+            };
+            let infix = infix_of(token);
+            let Some(right) = climb(input, operand, infix.right) else {
+                input.rewind(before);
+                return Some(left);
+            };
+            left = match infix.level {
+                Level::Range => range(left, token, right, step(input, operand)),
+                _ => binary(left, (token, span), right),
+            };
+            input.state().mark(infix.production);
+            ceiling = infix.next;
+        }
+    })
+}
+
+/// What an expression begins with, and the tightest level whose operators may follow it.
+fn prefix<'s>(
+    input: &mut Reader<'s, '_>,
+    operand: &Boxed<'s, Option<Expr>>,
+    floor: Level,
+) -> Option<(Expr, Level)> {
+    const SIGN: TokenSet = TokenSet::of(&[Token::Minus]);
+    const SIGNS: TokenSet = TokenSet::of(&[Token::Minus, Token::Not]);
+    let before = input.save();
+    let signs = if floor <= Level::Not { SIGNS } else { SIGN };
+    let Some((token, span)) = sign(input, signs) else {
+        return Some((input.parse(operand).ok()??, Level::Power));
+    };
+    let (op, production, level, ceiling) = match token {
+        Token::Not => (UnaryOp::Not, Production::Not, Level::Not, Level::And),
+        _ => (UnaryOp::Negate, Production::Unary, Level::Unary, Level::Prod),
+    };
+    let Some(inner) = climb(input, operand, level) else {
+        input.rewind(before);
+        return None;
+    };
+    input.state().mark(production);
+    let (kind_span, operand) = (span.to(inner.span), Box::new(inner));
+    let kind = ExprKind::Unary { op, op_span: span, operand };
+    Some((Expr { kind, span: kind_span }, ceiling))
+}
+
+/// The `step` of a range.
+fn step<'s>(input: &mut Reader<'s, '_>, operand: &Boxed<'s, Option<Expr>>) -> Option<Expr> {
+    let before = input.save();
+    sign(input, TokenSet::of(&[Token::Step]))?;
+    let step = climb(input, operand, Level::Sum);
+    if step.is_none() {
+        input.rewind(before);
+    }
+    step
+}
+
+/// One of the given tokens with its place.
+fn sign(input: &mut Reader, set: TokenSet) -> Option<(Token, Span)> {
+    let at = *input.cursor().inner();
+    let token = input.parse(take(set).or_not()).ok()??;
+    Some((token, input.state().span(at, at + 1)))
+}
+
+/// The infix operators of the levels from `floor` to `ceiling`.
+fn operators(floor: Level, ceiling: Level) -> TokenSet {
+    let levels = INFIX.iter().filter(|infix| floor <= infix.level && infix.level <= ceiling);
+    levels.fold(TokenSet::EMPTY, |set, infix| set.or(infix.operators))
+}
+
+fn infix_of(token: Token) -> &'static Infix {
+    INFIX.iter().find(|infix| infix.operators.has(token)).expect("an infix operator")
+}
 
 fn op_of(token: Token) -> BinaryOp {
     match token {
@@ -42,133 +203,13 @@ fn binary(left: Expr, (op, op_span): (Token, Span), right: Expr) -> Expr {
     Expr { kind: ExprKind::Binary { op: op_of(op), op_span, left, right }, span }
 }
 
-fn unary_expr((op, op_span): (UnaryOp, Span), operand: Expr) -> Expr {
-    let span = op_span.to(operand.span);
-    Expr { kind: ExprKind::Unary { op, op_span, operand: Box::new(operand) }, span }
-}
-
-fn sign<'s>(set: TokenSet) -> impl Parse<'s, (Token, Span)> {
-    take(set).map_with(|token, extra| (token, here(extra)))
-}
-
-/// Operands joined by operators of one precedence, from left to right.
-fn left_chain<'s>(
-    production: Production,
-    operators: TokenSet,
-    operand: impl Parse<'s, Expr>,
-) -> Boxed<'s, Expr> {
-    let tail = sign(operators).then(operand.clone());
-    operand
-        .foldl_with(tail.repeated(), move |left, (op, right), extra| {
-            extra.state().mark(production);
-            binary(left, op, right)
-        })
-        .boxed()
-}
-
-/// or = and { "or" and }
-pub(super) fn or<'s>(primary: impl Parse<'s, Expr>) -> Boxed<'s, Expr> {
-    left_chain(Production::Or, TokenSet::of(&[Token::Or]), and(primary))
-}
-
-/// and = not { "and" not }
-fn and<'s>(primary: impl Parse<'s, Expr>) -> Boxed<'s, Expr> {
-    left_chain(Production::And, TokenSet::of(&[Token::And]), not(primary))
-}
-
-/// not = "not" not | cmp
-fn not<'s>(primary: impl Parse<'s, Expr>) -> Boxed<'s, Expr> {
-    let sign = token(Token::Not).map_with(|_, extra| (UnaryOp::Not, here(extra)));
-    sign.repeated()
-        .foldr_with(cmp(primary), |op, operand, extra| {
-            extra.state().mark(Production::Not);
-            unary_expr(op, operand)
-        })
-        .boxed()
-}
-
-/// cmp = range [ ("==" | "!=" | "<" | "<=" | ">" | ">=") range ]
-fn cmp<'s>(primary: impl Parse<'s, Expr>) -> Boxed<'s, Expr> {
-    const COMPARISONS: TokenSet = TokenSet::of(&[
-        Token::Equal,
-        Token::NotEqual,
-        Token::Less,
-        Token::LessEqual,
-        Token::Greater,
-        Token::GreaterEqual,
-    ]);
-    let range = range(primary);
-    let tail = sign(COMPARISONS).then(range.clone());
-    range
-        .then(tail.or_not())
-        .map_with(|(left, tail), extra| match tail {
-            Some((op, right)) => {
-                extra.state().mark(Production::Cmp);
-                binary(left, op, right)
-            }
-            None => left,
-        })
-        .boxed()
-}
-
-/// range = sum [ (".." | "..<") sum [ "step" sum ] ]
-fn range<'s>(primary: impl Parse<'s, Expr>) -> Boxed<'s, Expr> {
-    const DOTS: TokenSet = TokenSet::of(&[Token::DotDot, Token::DotDotLess]);
-    let sum = sum(primary);
-    let step = token(Token::Step).ignore_then(sum.clone()).or_not();
-    let tail = take(DOTS).then(sum.clone()).then(step);
-    sum.then(tail.or_not())
-        .map_with(|(start, tail), extra| {
-            let Some(((dots, end), step)) = tail else { return start };
-            let span = here(extra);
-            extra.state().mark(Production::Range);
-            let kind = ExprKind::Range {
-                start: Box::new(start),
-                end: Box::new(end),
-                inclusive: dots == Token::DotDot,
-                step: step.map(Box::new),
-            };
-            Expr { kind, span }
-        })
-        .boxed()
-}
-
-/// sum = prod { ("+" | "-" | "++") prod }
-fn sum<'s>(primary: impl Parse<'s, Expr>) -> Boxed<'s, Expr> {
-    const SIGNS: TokenSet = TokenSet::of(&[Token::Plus, Token::Minus, Token::Join]);
-    left_chain(Production::Sum, SIGNS, prod(primary))
-}
-
-/// prod = unary { ("*" | "/" | "%" | "&") unary }
-fn prod<'s>(primary: impl Parse<'s, Expr>) -> Boxed<'s, Expr> {
-    const SIGNS: TokenSet =
-        TokenSet::of(&[Token::Star, Token::Slash, Token::Percent, Token::Ampersand]);
-    left_chain(Production::Prod, SIGNS, unary(primary))
-}
-
-/// unary = "-" unary | power
-fn unary<'s>(postfix: impl Parse<'s, Expr>) -> Boxed<'s, Expr> {
-    recursive(|unary| {
-        let sign = token(Token::Minus).map_with(|_, extra| (UnaryOp::Negate, here(extra)));
-        sign.repeated().foldr_with(power(postfix, unary), |op, operand, extra| {
-            extra.state().mark(Production::Unary);
-            unary_expr(op, operand)
-        })
-    })
-    .boxed()
-}
-
-/// power = postfix [ "^" unary ]
-fn power<'s>(postfix: impl Parse<'s, Expr>, unary: impl Parse<'s, Expr>) -> Boxed<'s, Expr> {
-    let tail = sign(TokenSet::of(&[Token::Caret])).then(unary);
-    postfix
-        .then(tail.or_not())
-        .map_with(|(base, tail), extra| match tail {
-            Some((op, exponent)) => {
-                extra.state().mark(Production::Power);
-                binary(base, op, exponent)
-            }
-            None => base,
-        })
-        .boxed()
+fn range(start: Expr, dots: Token, end: Expr, step: Option<Expr>) -> Expr {
+    let span = start.span.to(step.as_ref().unwrap_or(&end).span);
+    let kind = ExprKind::Range {
+        start: Box::new(start),
+        end: Box::new(end),
+        inclusive: dots == Token::DotDot,
+        step: step.map(Box::new),
+    };
+    Expr { kind, span }
 }

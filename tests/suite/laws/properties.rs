@@ -2,7 +2,11 @@
 
 use glam::DVec3;
 use katachi::{
-    geom::{PolyMesh, parity::is_below, spherical_projection::inside, triangulate::triangulate},
+    geom::{
+        parity::is_below,
+        spherical_projection::{Projection, inside},
+        triangulate::triangulate,
+    },
     kernel::brep::{
         Polyhedron,
         boolean::{Evaluated, Tree, evaluate},
@@ -132,19 +136,6 @@ fn holds(tree: &Tree, point: DVec3) -> Option<bool> {
     })
 }
 
-/// Edges as short as the snap distance have no direction in doubles, and the projection of a polygon
-/// takes its turns from directions, mm.
-const SHORT: f64 = 1e-6;
-
-fn shortest_edge(mesh: &PolyMesh) -> f64 {
-    let length = |a: u32, b: u32| mesh.points[a as usize].distance(mesh.points[b as usize]);
-    let shortest = |l: &[u32]| {
-        let next = l.iter().cycle().skip(1);
-        l.iter().zip(next).map(|(&a, &b)| length(a, b)).fold(f64::INFINITY, f64::min)
-    };
-    mesh.faces().flat_map(|f| f.loops()).map(shortest).fold(f64::INFINITY, f64::min)
-}
-
 /// Whether an odd number of triangles lies above a point, exactly.
 fn parity(triangles: &[[DVec3; 3]], point: DVec3) -> bool {
     triangles.iter().filter(|t| is_below(point, **t)).count() % 2 == 1
@@ -154,14 +145,13 @@ fn points_inside_are_those_the_tree_holds(seed: u64, tree: &Tree, solid: &Polyhe
     let mesh = solid.mesh();
     let corners = triangulate(mesh).corners;
     let triangles: Vec<_> = corners.iter().map(|t| t.map(|i| mesh.points[i as usize])).collect();
-    let shortest = shortest_edge(mesh);
+    let projection = Projection::new(mesh);
     let mut random = Random(seed ^ 0xabcd);
     for _ in 0..20 {
         let point = DVec3::from_array([(); 3].map(|()| random.unit() * 10.0 - 1.0));
         if let Some(expected) = holds(tree, point) {
-            if shortest > SHORT {
-                assert_eq!(inside(mesh, point), expected, "seed {seed}: projection at {point}");
-            }
+            assert_eq!(inside(mesh, point), expected, "seed {seed}: projection at {point}");
+            assert_eq!(projection.inside(point), expected, "seed {seed}: expansion at {point}");
             assert_eq!(parity(&triangles, point), expected, "seed {seed}: ray at {point}");
         }
     }

@@ -13,20 +13,32 @@ use super::{
     hierarchy::Hierarchy,
     intersect::Trace,
     nesting,
-    space::{Space, main_axis},
+    space::{NONE, Space, main_axis},
 };
 use crate::geom::wide::Wide;
 
-/// A piece of a boundary or a trace.
-struct Segment {
+/// A part of a boundary or a trace, from the point with the smaller number to the other.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Part {
     a: u32,
     b: u32,
     /// The plane that cuts the plane of the arrangement in it.
     support: u32,
     /// The leaf it comes from.
     owner: u32,
-    /// The facet that lies to its left, when it is part of a facet's boundary.
-    left: Option<u32>,
+    /// The facet on its left (1) or right (-1), when it is part of a facet's boundary.
+    side: Option<(u32, i32)>,
+}
+
+/// Equal parts: one segment.
+struct Segment {
+    a: u32,
+    b: u32,
+    support: u32,
+    /// The leaf that all parts come from, [`NONE`] for several.
+    owner: u32,
+    /// Facets to its sides: a range of a list.
+    sides: (u32, u32),
 }
 
 /// An edge of the arrangement, from the point with the smaller number to the other.
@@ -108,43 +120,63 @@ pub(super) fn arrange(
     complex: &mut Complex,
 ) {
     let (plane, _) = facets.plane(group[0], space);
-    let (segments, points) = gather(group, traces, plane, facets, space);
-    let splits = split(&segments, &points, plane, space, trusted);
-    let graph = Graph::of(plane, &segments, splits, space);
+    let gathered = gather(group, traces, plane, facets, space);
+    let splits = split(&gathered.segments, &gathered.points, plane, space, trusted);
+    let graph = Graph::of(plane, &gathered, splits, space);
     let cells = nesting::cells(&graph, space);
     let covers = covers(&graph, &cells);
     emit(&graph, &cells, &covers, facets, complex);
 }
 
-/// All segments and single points in the plane.
+/// All segments in the plane, the facets to their sides, and all single points.
+struct Gathered {
+    segments: Vec<Segment>,
+    sides: Vec<(u32, i32)>,
+    points: Vec<u32>,
+}
+
 fn gather(
     group: &[u32],
     traces: &[Trace],
     plane: u32,
     facets: &mut Facets,
     space: &mut Space,
-) -> (Vec<Segment>, Vec<u32>) {
-    let (mut segments, mut points) = (vec![], vec![]);
+) -> Gathered {
+    let (mut parts, mut points) = (vec![], vec![]);
     for &facet in group {
         let (_, turned) = facets.plane(facet, space);
         let owner = facets.list()[facet as usize].leaf;
         for (a, b) in facets.edges(facet) {
-            let (a, b) = if turned { (b, a) } else { (a, b) };
             let support = space.support(a, b, plane);
-            segments.push(Segment { a, b, support, owner, left: Some(facet) });
+            let side = Some((facet, if turned == (a > b) { 1 } else { -1 }));
+            parts.push(Part { a: a.min(b), b: a.max(b), support, owner, side });
         }
     }
-    for trace in traces {
-        let Trace { a, b, support, owner, .. } = *trace;
+    for &Trace { a, b, support, owner, .. } in traces {
         if a == b {
             points.push(a);
         } else {
-            segments.push(Segment { a, b, support, owner, left: None });
+            parts.push(Part { a: a.min(b), b: a.max(b), support, owner, side: None });
         }
     }
     points.sort_unstable();
     points.dedup();
-    (segments, points)
+    let (segments, sides) = merged(parts);
+    Gathered { segments, sides, points }
+}
+
+/// Equal parts made one segment.
+fn merged(mut parts: Vec<Part>) -> (Vec<Segment>, Vec<(u32, i32)>) {
+    parts.sort_unstable();
+    let (mut segments, mut sides) = (vec![], vec![]);
+    for equal in parts.chunk_by(|p, q| (p.a, p.b) == (q.a, q.b)) {
+        let Part { a, b, support, owner, .. } = equal[0];
+        let owner = if equal.iter().all(|p| p.owner == owner) { owner } else { NONE };
+        let start = sides.len() as u32;
+        sides.extend(equal.iter().filter_map(|p| p.side));
+        segments.push(Segment { a, b, support, owner, sides: (start, sides.len() as u32) });
+    }
+    (segments, sides)
 }
 
 /// The points that split each segment, as pairs (segment, point).
@@ -159,18 +191,14 @@ fn split(
     let tree = Hierarchy::new(segments.iter().map(|s| space.bounds(s.a, s.b)));
     let mut pairs = vec![];
     tree.own_pairs(|s, t| {
-        if !trusted || segments[s as usize].owner != segments[t as usize].owner {
+        let owner = segments[s as usize].owner;
+        if !trusted || owner == NONE || owner != segments[t as usize].owner {
             pairs.push((s, t));
         }
     });
     for (s, t) in pairs {
-        split_pair(
-            (s, &segments[s as usize]),
-            (t, &segments[t as usize]),
-            plane,
-            space,
-            &mut splits,
-        );
+        let (first, second) = (&segments[s as usize], &segments[t as usize]);
+        split_pair((s, first), (t, second), plane, space, &mut splits);
     }
     for &point in points {
         tree.overlapping(&space.bounds(point, point), |s| {
@@ -206,7 +234,8 @@ fn split_pair(
     splits: &mut Vec<(u32, u32)>,
 ) {
     let (fa, fb) = (side(second, first.a, space), side(second, first.b, space));
-    if fa * fb > 0 {
+    let shares = |p: u32| p == second.a || p == second.b;
+    if fa * fb > 0 || (shares(first.a) && fb != 0) || (shares(first.b) && fa != 0) {
         return;
     }
     let (sa, sb) = (side(first, second.a, space), side(first, second.b, space));
@@ -247,10 +276,11 @@ fn pieces(segments: &[Segment], mut splits: Vec<(u32, u32)>, space: &Space) -> V
     splits.sort_unstable();
     splits.dedup();
     let mut pieces = Vec::with_capacity(segments.len() + splits.len());
-    let mut rest = &splits[..];
+    let (mut rest, mut stops) = (&splits[..], vec![]);
     for (number, segment) in (0u32..).zip(segments) {
         let count = rest.iter().take_while(|s| s.0 == number).count();
-        let mut stops: Vec<u32> = rest[..count].iter().map(|s| s.1).collect();
+        stops.clear();
+        stops.extend(rest[..count].iter().map(|s| s.1));
         rest = &rest[count..];
         if count > 1 {
             let (axis, sign) = space.direction(segment.a, segment.b);
@@ -259,8 +289,9 @@ fn pieces(segments: &[Segment], mut splits: Vec<(u32, u32)>, space: &Space) -> V
                 if sign < 0 { order.reverse() } else { order }
             });
         }
+        stops.push(segment.b);
         let mut from = segment.a;
-        for to in stops.into_iter().chain([segment.b]) {
+        for &to in &stops {
             let (a, b) = (from.min(to), from.max(to));
             pieces.push(Piece { a, b, segment: number, reversed: from > to });
             from = to;
@@ -271,12 +302,12 @@ fn pieces(segments: &[Segment], mut splits: Vec<(u32, u32)>, space: &Space) -> V
 }
 
 impl Graph {
-    fn of(plane: u32, segments: &[Segment], splits: Vec<(u32, u32)>, space: &Space) -> Graph {
+    fn of(plane: u32, gathered: &Gathered, splits: Vec<(u32, u32)>, space: &Space) -> Graph {
         let normal = space.plane(plane).normal;
         let main = main_axis(normal.map(i128::from));
         let axes = [(main + 1) % 3, (main + 2) % 3];
         let axes = if normal[main] < 0 { [axes[1], axes[0]] } else { axes };
-        let (edges, crossings) = edges(plane, axes, segments, splits, space);
+        let (edges, crossings) = edges(plane, axes, gathered, splits, space);
         let mut graph = Graph {
             plane,
             axes,
@@ -387,7 +418,7 @@ const CROSS_ERROR: f64 = 8.0 * f64::EPSILON;
 fn edges(
     plane: u32,
     axes: [usize; 2],
-    segments: &[Segment],
+    Gathered { segments, sides, .. }: &Gathered,
     splits: Vec<(u32, u32)>,
     space: &Space,
 ) -> (Vec<Edge>, Vec<(u32, i32)>) {
@@ -398,9 +429,10 @@ fn edges(
         let support = segments[equal[0].segment as usize].support;
         let start = crossings.len() as u32;
         for piece in equal {
-            if let Some(facet) = segments[piece.segment as usize].left {
-                crossings.push((facet, if piece.reversed { -1 } else { 1 }));
-            }
+            let (from, to) = segments[piece.segment as usize].sides;
+            let turn = if piece.reversed { -1 } else { 1 };
+            let own = &sides[from as usize..to as usize];
+            crossings.extend(own.iter().map(|&(facet, side)| (facet, side * turn)));
         }
         let line = space.line(plane, support);
         let axis = main_axis(line);

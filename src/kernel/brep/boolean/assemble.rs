@@ -39,7 +39,9 @@ impl Assembly<'_> {
             mesh.add_origin(origin);
         }
         let mut loops = self.corners(&boundary, &outline, &dropped, &mut mesh);
-        part_equal_edges(&mut loops, &mut mesh);
+        if boundary.touches {
+            part_equal_edges(&mut loops, &mut mesh);
+        }
         self.add_faces(&boundary, &outline, &loops, &mut mesh);
         if self.plan.frame.mirrors() {
             mesh.flip();
@@ -161,22 +163,18 @@ fn part_equal_edges(loops: &mut [Vec<(u32, u32)>], mesh: &mut PolyMesh) {
         let (a, b) = (corners[i].0, corners[(i + 1) % corners.len()].0);
         (a.min(b), a.max(b))
     };
-    let mut uses: FxHashMap<(u32, u32), u32> = FxHashMap::default();
-    for corners in loops.iter() {
-        for i in 0..corners.len() {
-            *uses.entry(ends(corners, i)).or_default() += 1;
-        }
-    }
-    if uses.values().all(|&n| n == 2) {
-        return;
-    }
+    let all = loops.iter().flat_map(|l| (0..l.len()).map(move |i| ends(l, i)));
+    let mut all: Vec<(u32, u32)> = all.collect();
+    all.sort_unstable();
+    let crowded: Vec<(u32, u32)> =
+        all.chunk_by(|a, b| a == b).filter(|run| run.len() > 2).map(|run| run[0]).collect();
     let mut middles: FxHashMap<u32, u32> = FxHashMap::default();
     for corners in loops.iter_mut() {
         let mut parted = Vec::with_capacity(corners.len() + 1);
         for i in 0..corners.len() {
             parted.push(corners[i]);
             let (a, b) = ends(corners, i);
-            if uses[&(a, b)] > 2 {
+            if crowded.binary_search(&(a, b)).is_ok() {
                 let middle = *middles.entry(corners[i].1).or_insert_with(|| {
                     let place = (mesh.points[a as usize] + mesh.points[b as usize]) / 2.0;
                     mesh.points.push(place);

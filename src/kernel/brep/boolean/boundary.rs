@@ -24,6 +24,8 @@ pub(super) struct Boundary {
     pub polygon: Vec<u32>,
     /// What each cell is made of.
     pub keys: Vec<Option<Key>>,
+    /// Whether the result touches itself along an edge.
+    pub touches: bool,
 }
 
 impl Boundary {
@@ -45,7 +47,7 @@ impl Boundary {
         for around in &crowded {
             link_crowded(around, complex, sides, &polygon, &mut twin);
         }
-        Boundary { origin, next, twin, polygon, keys }
+        Boundary { origin, next, twin, polygon, keys, touches: !crowded.is_empty() }
     }
 
     /// Whether a half-edge runs inside a merged polygon.

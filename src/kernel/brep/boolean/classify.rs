@@ -36,18 +36,19 @@ pub(super) fn classify(
     let mut components = Sets::new(complex.cell_count());
     let mut radial = vec![];
     for edge in 0..complex.edge_count() {
-        let mut around = complex.around(edge).to_vec();
-        if around.len() > 2 {
-            complex.sort_radially(&mut around, facets, space);
+        let around = complex.around(edge);
+        if let &[half, back] = around {
+            link(half, back, complex, &mut regions, &mut components);
+            link(back, half, complex, &mut regions, &mut components);
+            continue;
         }
+        let mut around = around.to_vec();
+        complex.sort_radially(&mut around, facets, space);
         for (i, &half) in around.iter().enumerate() {
             let next = around[(i + 1) % around.len()];
-            regions.join(following_side(complex, half), following_side(complex, next) ^ 1);
-            components.join(complex.halves[half as usize].cell, complex.halves[next as usize].cell);
+            link(half, next, complex, &mut regions, &mut components);
         }
-        if around.len() > 2 {
-            radial.push((edge as u32, around));
-        }
+        radial.push((edge as u32, around));
     }
     let seeds = seed::seeds(complex, &mut components, &radial, facets, space);
     let mut spread = Spread::new(complex, regions, expression, leaves, facets);
@@ -55,6 +56,12 @@ pub(super) fn classify(
         spread.flood(seed);
     }
     spread.is_consistent().then(|| Sides { inside: spread.sides(), radial })
+}
+
+/// Joins what faces the wedge between a half-edge and the one that follows it around their edge.
+fn link(half: u32, next: u32, complex: &Complex, regions: &mut Sets, components: &mut Sets) {
+    regions.join(following_side(complex, half), following_side(complex, next) ^ 1);
+    components.join(complex.halves[half as usize].cell, complex.halves[next as usize].cell);
 }
 
 /// Winding numbers on their way from region to region.

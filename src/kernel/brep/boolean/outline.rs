@@ -63,21 +63,25 @@ impl Outline {
 
     /// Whether each vertex is dropped, by the half-edge that stands for it.
     pub fn dropped(&self, boundary: &Boundary, complex: &Complex, space: &Space) -> Vec<bool> {
-        let mut leaving: FxHashMap<u32, u32> = FxHashMap::default();
+        let mut leaving = vec![0u32; boundary.twin.len()];
         for half in boundary.outer() {
-            *leaving.entry(self.vertex[half as usize]).or_default() += 1;
+            leaving[self.vertex[half as usize] as usize] += 1;
         }
         // Where several vertices stand in one point the result touches itself: all of them stay.
-        let mut standing: FxHashMap<u32, u32> = FxHashMap::default();
+        let mut standing = vec![0u32; space.point_count()];
         for half in boundary.outer().filter(|&h| self.vertex[h as usize] == h) {
-            *standing.entry(boundary.origin[half as usize]).or_default() += 1;
+            standing[boundary.origin[half as usize] as usize] += 1;
         }
-        let alone = |half: u32| standing[&boundary.origin[half as usize]] == 1;
+        let alone = |half: u32| standing[boundary.origin[half as usize] as usize] == 1;
         let mut dropped = vec![false; boundary.twin.len()];
         let straight = Straight { outline: self, boundary, complex, space };
         for half in boundary.outer() {
             let vertex = self.vertex[half as usize];
-            if vertex == half && leaving[&vertex] == 2 && alone(half) && straight.holds(half) {
+            if vertex == half
+                && leaving[vertex as usize] == 2
+                && alone(half)
+                && straight.holds(half)
+            {
                 dropped[vertex as usize] = true;
             }
         }

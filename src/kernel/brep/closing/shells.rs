@@ -97,7 +97,19 @@ impl<'a> Nesting<'a> {
         let own = self.boxes[shell];
         let mut found = self.by_box.overlapping(&Bounds::of([own.min]));
         found.retain(|&s| s as usize != shell && self.boxes[s as usize].contains(own.max));
+        // One shell given twice lies on itself, not inside.
+        found.retain(|&s| {
+            self.boxes[s as usize] != own || self.places(s as usize) != self.places(shell)
+        });
         found
+    }
+
+    /// The corners of a shell's triangles, in an order of their own.
+    fn places(&self, shell: usize) -> Vec<[u64; 3]> {
+        let corners = self.members[shell].iter().flat_map(|&t| self.soup.corners(t as usize));
+        let mut places: Vec<_> = corners.map(|p| p.to_array().map(f64::to_bits)).collect();
+        places.sort_unstable();
+        places
     }
 
     /// In how many other shells a shell lies.

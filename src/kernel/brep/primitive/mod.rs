@@ -2,14 +2,10 @@
 //!
 //! Lengths in millimetres. Sizes are the caller's promise: what is not positive and finite gives the
 //! empty solid, fewer than three sides count as three. The number of sides is not bounded here, and facets
-//! grow with it (a sphere's and a torus's with its square): [`MAX_CIRCLE_SIDES`] and [`MAX_SPHERE_SIDES`] are
-//! sensible limits.
-
-mod sides;
+//! grow with it (a sphere's and a torus's with its square): whoever asks sets the limit. How many a tolerance
+//! needs says [`geom::sides`](crate::geom::sides).
 
 use glam::{DVec3, dvec2};
-
-pub use sides::{MAX_CIRCLE_SIDES, MAX_SPHERE_SIDES, circle_sides, sphere_sides, torus_sides};
 
 use super::{
     Polyhedron,

@@ -1,0 +1,173 @@
+//! Where a closed surface crosses or covers itself.
+
+use glam::{DVec2, DVec3};
+
+use super::Polyhedron;
+use crate::geom::{
+    Bounds, PolyMesh,
+    bvh::Bvh,
+    orient::{orient2d, orient3d},
+    triangulate::triangulate,
+};
+
+type Triangle = [DVec3; 3];
+
+/// A place in mm where the boundary of a solid passes through itself or lies on itself; `None` if it does
+/// nowhere. Decided by exact signs. Triangles that share a corner are not compared; shells that share an edge
+/// or a corner do not cross, one that stands on a face with an edge counts as crossing.
+///
+/// ```
+/// use glam::DVec3;
+/// use katachi::kernel::brep::{crossing::crossing, primitive::cuboid};
+/// let mut two = cuboid(DVec3::ZERO, DVec3::splat(2.0)).into_mesh();
+/// assert_eq!(crossing(&two), None);
+/// two.append(cuboid(DVec3::ONE, DVec3::new(3.0, 3.5, 4.0)).mesh());
+/// assert!(crossing(&two).is_some());
+/// ```
+pub fn crossing(mesh: &PolyMesh) -> Option<DVec3> {
+    let indices = triangulate(mesh).corners;
+    let corners: Vec<Triangle> =
+        indices.iter().map(|t| t.map(|c| mesh.points[c as usize])).collect();
+    let boxes: Vec<Bounds> = corners.iter().map(|t| Bounds::of(*t)).collect();
+    let mut first = None;
+    Bvh::new(&boxes).self_pairs(|i, j| {
+        let (a, b) = (i as usize, j as usize);
+        let neighbours = indices[a].iter().any(|c| indices[b].contains(c));
+        if !neighbours && first.is_none_or(|known| (i, j) < known) && meet(&corners[a], &corners[b])
+        {
+            first = Some((i, j));
+        }
+    });
+    let (i, j) = first?;
+    let common = |k: fn(DVec3, DVec3) -> DVec3, of: fn(&Bounds) -> DVec3| {
+        k(of(&boxes[i as usize]), of(&boxes[j as usize]))
+    };
+    Some((common(DVec3::max, |b| b.min) + common(DVec3::min, |b| b.max)) / 2.0)
+}
+
+/// Whether two triangles pass through each other, have area in common, or one has an edge on the other.
+fn meet(s: &Triangle, t: &Triangle) -> bool {
+    let sides = |s: &Triangle, t: &Triangle| t.map(|p| orient3d(s[0], s[1], s[2], p));
+    let (of_s, of_t) = (sides(t, s), sides(s, t));
+    if of_t == [0.0; 3] {
+        return overlap(s, t);
+    }
+    match (apex(s, of_s), apex(t, of_t)) {
+        (Some(s), Some(t)) => straddle(&s, &t),
+        (None, Some(_)) => rests(s, of_s, t),
+        (Some(_), None) => rests(t, of_t, s),
+        (None, None) => false,
+    }
+}
+
+/// The triangle turned so that its first corner is alone on its side of a plane; `None` if the plane does
+/// not separate its corners.
+fn apex(t: &Triangle, sides: [f64; 3]) -> Option<Triangle> {
+    let separated = sides.iter().any(|v| *v > 0.0) && sides.iter().any(|v| *v < 0.0);
+    let alone = |k: usize| {
+        let same = |i: usize| sides[i % 3] * sides[k] > 0.0;
+        sides[k] != 0.0 && !same(k + 1) && !same(k + 2)
+    };
+    let first = (0..3).find(|&k| separated && alone(k))?;
+    Some([t[first], t[(first + 1) % 3], t[(first + 2) % 3]])
+}
+
+/// Whether two triangles, each separated by the other's plane and turned by [`apex`], have a segment in
+/// common. The edges from both apexes pass through the common line; the sign of two edges is the order of
+/// their places there.
+fn straddle(s: &Triangle, t: &Triangle) -> bool {
+    let order = |i: usize, j: usize| orient3d(s[0], s[i], t[0], t[j]);
+    let orders = [order(1, 1), order(1, 2), order(2, 1), order(2, 2)];
+    orders.iter().any(|v| *v > 0.0) && orders.iter().any(|v| *v < 0.0)
+}
+
+/// Whether `s`, on one side of the plane of `t`, has an edge in it that runs through `t`. The surface may
+/// pass through there with the next triangle.
+fn rests(s: &Triangle, sides: [f64; 3], t: &Triangle) -> bool {
+    let Some(k) = (0..3).find(|&k| sides[k] == 0.0 && sides[(k + 1) % 3] == 0.0) else {
+        return false;
+    };
+    let flat = projection(t);
+    let (edge, t) = ([s[k], s[(k + 1) % 3]].map(&flat), t.map(&flat));
+    let sides = t.map(|p| orient2d(edge[0], edge[1], p));
+    sides.iter().any(|v| *v > 0.0) && sides.iter().any(|v| *v < 0.0) && !parted(&t, &edge)
+}
+
+/// Whether two triangles of one plane have area in common: no edge of either has the other on its far side.
+fn overlap(s: &Triangle, t: &Triangle) -> bool {
+    let flat = projection(s);
+    let (s, t) = (s.map(&flat), t.map(&flat));
+    let has_area = |t: &[DVec2; 3]| orient2d(t[0], t[1], t[2]) != 0.0;
+    has_area(&s) && has_area(&t) && !parted(&s, &t) && !parted(&t, &s)
+}
+
+/// Drops the coordinate along which a triangle's normal is longest.
+fn projection(t: &Triangle) -> impl Fn(DVec3) -> DVec2 {
+    let normal = (t[1] - t[0]).cross(t[2] - t[0]).abs();
+    let long = normal.max_element();
+    let axis = if normal.z == long { 2 } else { usize::from(normal.y == long) };
+    move |p| DVec2::new(p[(axis + 1) % 3], p[(axis + 2) % 3])
+}
+
+/// Whether an edge of a triangle has all points on its far side.
+fn parted(t: &[DVec2; 3], points: &[DVec2]) -> bool {
+    let turn = orient2d(t[0], t[1], t[2]).signum();
+    let far = |k: usize| points.iter().all(|p| orient2d(t[k], t[(k + 1) % 3], *p) * turn <= 0.0);
+    (0..3).any(far)
+}
+
+/// The solid's volume is so small a share of its area times its size that it encloses nothing.
+const NOTHING: f64 = 1e-12;
+
+/// Whether a solid encloses nothing but rounding: it is flat, or inside out.
+pub fn is_hollow(solid: &Polyhedron) -> bool {
+    let Some([min, max]) = super::measure::bounds(solid) else { return true };
+    let size = (max - min).length();
+    super::measure::volume(solid) <= NOTHING * super::measure::area(solid) * size
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::dvec3;
+
+    use super::*;
+    use crate::{
+        geom::PolyMesh,
+        kernel::brep::primitive::{cuboid, torus},
+    };
+
+    fn with(second: &Polyhedron) -> PolyMesh {
+        let mut mesh = cuboid(DVec3::ZERO, DVec3::splat(2.0)).into_mesh();
+        mesh.append(second.mesh());
+        mesh
+    }
+
+    #[test]
+    fn shells_that_touch_do_not_cross() {
+        for at in [dvec3(2., 2., 0.), dvec3(2., 2., 2.), dvec3(5., 0., 0.)] {
+            assert_eq!(crossing(&with(&cuboid(at, at + 1.0))), None, "{at}");
+        }
+        assert_eq!(crossing(torus(9., 3., 24, 12).mesh()), None);
+    }
+
+    #[test]
+    fn shells_that_cross_or_cover_each_other() {
+        for at in [dvec3(1., 1., 1.), dvec3(0., 0., 0.), dvec3(2., 0.5, 0.5), dvec3(0.5, 0.5, 1.)] {
+            let found = crossing(&with(&cuboid(at, at + 2.0)));
+            assert!(found.is_some_and(|p| p.cmpge(at).all() && p.cmple(at + 2.0).all()), "{at}");
+        }
+    }
+
+    #[test]
+    fn a_ball_whose_equator_lies_in_a_face() {
+        let ball = crate::kernel::brep::primitive::sphere(0.5, 10);
+        let up = crate::geom::Placement::new(glam::DMat3::IDENTITY, dvec3(1., 1., 2.));
+        assert!(crossing(&with(&ball.placed(&up))).is_some());
+    }
+
+    #[test]
+    fn what_encloses_nothing() {
+        assert!(is_hollow(&Polyhedron::empty()));
+        assert!(!is_hollow(&cuboid(DVec3::ZERO, dvec3(1., 1., 1e-6))));
+    }
+}
