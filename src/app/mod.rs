@@ -2,6 +2,7 @@
 
 pub mod cli;
 pub mod disk;
+mod interrupt;
 pub mod render;
 pub mod stopwatch;
 pub mod write;

@@ -6,7 +6,7 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 
-use super::disk::refusal;
+use super::{disk::refusal, interrupt};
 
 /// Writes `bytes` to `folder/name`, making folders as needed, and returns the path. `name` uses `/`
 /// and may not leave the folder. On failure no part of the file is left behind; the error is in words.
@@ -31,8 +31,14 @@ pub fn write_whole(folder: &Path, name: &str, bytes: &[u8]) -> Result<PathBuf, S
 }
 
 fn replace(parent: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut unfinished = interrupt::unfinished();
     let mut file = builder().tempfile_in(parent)?;
-    file.write_all(bytes)?;
+    *unfinished = Some(file.path().to_path_buf());
+    drop(unfinished);
+    let written = file.write_all(bytes);
+    let mut unfinished = interrupt::unfinished();
+    *unfinished = None;
+    written?;
     file.persist(path).map_err(|e| e.error)?;
     Ok(())
 }

@@ -4,13 +4,13 @@ use glam::{DAffine2, DVec2, DVec3};
 
 use super::{
     Realizer, check_size,
-    failure::{At, Coded, Made},
+    failure::{At, Coded, Made, failure},
     figure::{self, Figure},
     import,
     paint::Paint,
 };
 use crate::{
-    base::Code,
+    base::{Code, Diagnostic},
     geom::{Region, sides as count},
     kernel::brep::{
         Polyhedron,
@@ -22,6 +22,9 @@ use crate::{
     },
     shape::{Kind, Node, ShapeGraph, ShapeId},
 };
+
+/// Points that one hull may be made of: about half a gigabyte while it is.
+const MOST_HULL_POINTS: usize = 4_000_000;
 
 impl Coded for ExtrudeError {
     fn code(&self) -> Code {
@@ -91,6 +94,11 @@ pub fn make(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Made<Polyhe
             let mut points: Vec<DVec3> = vec![];
             for &child in list.iter() {
                 points.extend(&realizer.solid_made(graph, child)?.polyhedron.mesh().points);
+                if points.len() > MOST_HULL_POINTS {
+                    let words = format!("a hull of more than {MOST_HULL_POINTS} points");
+                    let error = Diagnostic::error(Code::Limit, words).label(origin, "");
+                    return Err(failure(error.help("give a larger tolerance or fewer shapes")));
+                }
             }
             hull(&points).at(origin)
         }

@@ -441,3 +441,25 @@ fn every_kind_of_error_is_a_line_of_json_when_asked_for() {
         );
     }
 }
+
+#[cfg(unix)]
+#[test]
+fn a_command_told_to_stop_leaves_no_part_of_a_file() {
+    let folder = folder(&[("m.kata", "part p = sphere(10, sides = 1500)")]);
+    let out = folder.path().join("out");
+    let mut command = katachi(&["build", "m.kata", "--format", "obj"]);
+    command.current_dir(folder.path()).stdout(Stdio::null()).stderr(Stdio::null());
+    let mut child = command.spawn().expect("starts");
+    // The temporary file appears, or else writing was too fast to be caught.
+    while names(&out).is_empty() && child.try_wait().expect("a child").is_none() {
+        std::thread::yield_now();
+    }
+    let mut kill = std::process::Command::new("kill");
+    kill.args(["-INT", &child.id().to_string()]).stderr(Stdio::null()).status().expect("kill");
+    let end = child.wait().expect("ends").code();
+    let left = names(&out);
+    assert!(
+        end == Some(130) && left.is_empty() || end == Some(0) && left == ["p.obj"],
+        "{end:?} {left:?}"
+    );
+}

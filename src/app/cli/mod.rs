@@ -59,8 +59,8 @@ fn style_asked(arguments: impl Iterator<Item = OsString>) -> Style {
     let pairs = arguments.windows(2).filter(|pair| pair[0] == "--diagnostics");
     let apart = pairs.filter_map(|pair| pair[1].to_str());
     let joined = arguments.iter().filter_map(|a| a.to_str()?.strip_prefix("--diagnostics="));
-    let named = apart.chain(joined).filter_map(|name| Style::from_str(name, false).ok());
-    named.last().unwrap_or_default()
+    let mut named = apart.chain(joined).filter_map(|name| Style::from_str(name, false).ok());
+    named.next_back().unwrap_or_default()
 }
 
 fn dispatch(cli: &Cli) -> io::Result<Exit> {
