@@ -5,6 +5,7 @@ use rustc_hash::FxHashMap;
 
 use super::{
     boundary::Boundary,
+    carry::Carried,
     cells::Complex,
     classify::Sides,
     facet::Facets,
@@ -13,6 +14,7 @@ use super::{
     lattice::Lattice,
     origins::{Key, Labels},
     outline::Outline,
+    patch::Patches,
     space::{NONE, Space},
 };
 use crate::geom::PolyMesh;
@@ -21,6 +23,7 @@ use crate::geom::PolyMesh;
 pub(super) struct Assembly<'a> {
     pub plan: &'a Plan,
     pub lattice: &'a Lattice,
+    pub patches: &'a Patches,
     pub facets: &'a Facets,
     pub space: &'a Space,
     pub complex: &'a Complex,
@@ -32,21 +35,36 @@ impl Assembly<'_> {
     pub fn mesh(&self) -> PolyMesh {
         let mut labels = Labels::new(self.plan, self.facets);
         let boundary = Boundary::of(self.complex, self.sides, &mut labels);
-        let outline = Outline::of(&boundary);
-        let dropped = outline.dropped(&boundary, self.complex, self.space);
+        let borders = self.borders();
+        let outline = Outline::of(&boundary, &borders);
+        let dropped = outline.dropped((&boundary, &borders), self.complex, self.space);
         let mut mesh = PolyMesh::default();
-        for origin in labels.origins {
-            mesh.add_origin(origin);
-        }
-        let mut loops = self.corners(&boundary, &outline, &dropped, &mut mesh);
+        let (mut loops, standing) = self.corners(&boundary, &outline, &dropped, &mut mesh);
+        let carried = Carried::new(self, &boundary.up, &standing);
         if boundary.touches {
             part_equal_edges(&mut loops, &mut mesh);
         }
+        let carried_origins = carried.origins(&mut labels);
+        for origin in labels.origins {
+            mesh.add_origin(origin);
+        }
         self.add_faces(&boundary, &outline, &loops, &mut mesh);
+        carried.add_faces(&carried_origins, &mut mesh);
         if self.plan.frame.mirrors() {
             mesh.flip();
         }
         mesh
+    }
+
+    /// Whether each point borders on a patch.
+    fn borders(&self) -> Vec<bool> {
+        let mut borders = vec![false; self.space.point_count()];
+        if !self.patches.list.is_empty() {
+            for (border, &(leaf, corner)) in borders.iter_mut().zip(&self.facets.sources) {
+                *border = self.patches.leaves[leaf as usize].patch(corner).is_some();
+            }
+        }
+        borders
     }
 
     /// Where a point stands in the result. A corner of a leaf stands where the leaf's placement puts
@@ -85,14 +103,16 @@ impl Assembly<'_> {
         levels
     }
 
-    /// Every loop as mesh points, and for every edge a number that both its sides share.
+    /// Every loop as mesh points, and for every edge a number that both its sides share; and a mesh
+    /// point for each point.
     fn corners(
         &self,
         boundary: &Boundary,
         outline: &Outline,
         dropped: &[bool],
         mesh: &mut PolyMesh,
-    ) -> Vec<Vec<(u32, u32)>> {
+    ) -> (Vec<Vec<(u32, u32)>>, Vec<u32>) {
+        let mut standing = vec![NONE; self.space.point_count()];
         let mut numbers = vec![NONE; outline.vertex.len()];
         let mut loops = vec![];
         let levels = self.levels();
@@ -106,7 +126,9 @@ impl Assembly<'_> {
                 let number = &mut numbers[vertex(half)];
                 if *number == NONE {
                     *number = mesh.points.len() as u32;
-                    mesh.points.push(self.place(boundary.origin[half as usize], &levels));
+                    let point = boundary.origin[half as usize];
+                    standing[point as usize] = *number;
+                    mesh.points.push(self.place(point, &levels));
                 }
                 let next = kept[(k + 1) % kept.len()];
                 let last = halves[(next + halves.len() - 1) % halves.len()];
@@ -114,7 +136,7 @@ impl Assembly<'_> {
             }
             loops.push(corners);
         }
-        loops
+        (loops, standing)
     }
 
     fn add_faces(

@@ -18,12 +18,14 @@ pub(super) struct Boundary {
     pub origin: Vec<u32>,
     /// What follows it around its cell.
     pub next: Vec<u32>,
-    /// The half-edge that runs back along the same edge.
+    /// The half-edge that runs back along the same edge; [`NONE`] where a patch borders.
     pub twin: Vec<u32>,
     /// The merged polygon of each half-edge, known by one of its cells.
     pub polygon: Vec<u32>,
     /// What each cell is made of.
     pub keys: Vec<Option<Key>>,
+    /// For each cell whether it is in the result, and then whether the outside is above.
+    pub up: Vec<Option<bool>>,
     /// Whether the result touches itself along an edge.
     pub touches: bool,
 }
@@ -31,14 +33,13 @@ pub(super) struct Boundary {
 impl Boundary {
     /// The boundary of the result.
     pub fn of(complex: &Complex, sides: &Sides, labels: &mut Labels<'_>) -> Boundary {
-        let cells = 0..complex.cell_count() as u32;
-        let up: Vec<Option<bool>> = cells
-            .clone()
+        let up: Vec<Option<bool>> = (0..complex.cell_count())
             .map(|c| {
-                let at = 2 * c as usize;
+                let at = 2 * c;
                 (sides.inside[at] != sides.inside[at + 1]).then_some(sides.inside[at + 1])
             })
             .collect();
+        let cells = 0..complex.first_patch;
         let keys: Vec<Option<Key>> =
             cells.map(|c| up[c as usize].map(|up| labels.key(complex, c, up))).collect();
         let (origin, next) = directed(complex, &up);
@@ -47,18 +48,19 @@ impl Boundary {
         for around in &crowded {
             link_crowded(around, complex, sides, &polygon, &mut twin);
         }
-        Boundary { origin, next, twin, polygon, keys, touches: !crowded.is_empty() }
+        Boundary { origin, next, twin, polygon, keys, up, touches: !crowded.is_empty() }
     }
 
     /// Whether a half-edge runs inside a merged polygon.
     pub fn is_inner(&self, half: u32) -> bool {
-        self.polygon[half as usize] == self.polygon[self.twin[half as usize] as usize]
+        let twin = self.twin[half as usize];
+        twin != NONE && self.polygon[half as usize] == self.polygon[twin as usize]
     }
 
     /// The half-edges that bound merged polygons.
     pub fn outer(&self) -> impl Iterator<Item = u32> + '_ {
         let halves = 0..self.twin.len() as u32;
-        halves.filter(|&h| self.twin[h as usize] != NONE && !self.is_inner(h))
+        halves.filter(|&h| self.origin[h as usize] != NONE && !self.is_inner(h))
     }
 }
 
@@ -95,7 +97,8 @@ fn twins(complex: &Complex, sides: &Sides, up: &[Option<bool>]) -> (Vec<u32>, Ve
         kept.clear();
         kept.extend(around.filter(|&h| up[complex.halves[h as usize].cell as usize].is_some()));
         match kept[..] {
-            [] => {}
+            // A patch is on the other side of a single one.
+            [] | [_] => {}
             [a, b] => (twin[a as usize], twin[b as usize]) = (b, a),
             _ => crowded.push(kept.clone()),
         }

@@ -40,6 +40,8 @@ pub(super) struct Complex {
     /// The half-edges of all cells, a cell's together.
     pub halves: Vec<Half>,
     loop_start: u32,
+    /// The cell that stands for the first patch; those of the others follow to the end.
+    pub first_patch: u32,
     /// The half-edges along every edge: `incident[edge_ends[e-1]..edge_ends[e]]`.
     incident: Vec<u32>,
     edge_ends: Vec<u32>,
@@ -74,7 +76,13 @@ impl Complex {
         }
     }
 
-    /// The number of cells.
+    /// Adds cells without a boundary that stand for patches, each given by a facet of its leaf.
+    pub fn add_patches(&mut self, leaves: impl Iterator<Item = u32>) {
+        self.first_patch = self.cells.len() as u32;
+        leaves.for_each(|facet| self.begin_cell(NONE, [(facet, 1)].into_iter()));
+    }
+
+    /// The number of cells, those that stand for patches with them.
     pub fn cell_count(&self) -> usize {
         self.cells.len()
     }

@@ -6,8 +6,8 @@
 //! winding numbers of the components around it (see `seed`).
 
 use super::{
-    cells::Complex, expression::Expression, expression::State, facet::Facets, seed, space::Space,
-    union_find::Sets,
+    cells::Complex, expression::Expression, expression::State, facet::Facets, frame::Leaf,
+    patch::Patches, seed, space::Space, union_find::Sets,
 };
 
 /// What is known about the sides of cells. Side 2 c is above cell c, 2 c + 1 below it.
@@ -28,7 +28,7 @@ pub(super) fn following_side(complex: &Complex, half: u32) -> u32 {
 pub(super) fn classify(
     complex: &Complex,
     expression: &Expression,
-    leaves: usize,
+    (leaves, patches): (&[Leaf], &Patches),
     facets: &mut Facets,
     space: &mut Space,
 ) -> Option<Sides> {
@@ -37,10 +37,15 @@ pub(super) fn classify(
     let mut radial = vec![];
     for edge in 0..complex.edge_count() {
         let around = complex.around(edge);
-        if let &[half, back] = around {
-            link(half, back, complex, &mut regions, &mut components);
-            link(back, half, complex, &mut regions, &mut components);
-            continue;
+        match *around {
+            // Across the edge is a patch.
+            [_] => continue,
+            [half, back] => {
+                link(half, back, complex, &mut regions, &mut components);
+                link(back, half, complex, &mut regions, &mut components);
+                continue;
+            }
+            _ => {}
         }
         let mut around = around.to_vec();
         complex.sort_radially(&mut around, facets, space);
@@ -50,8 +55,10 @@ pub(super) fn classify(
         }
         radial.push((edge as u32, around));
     }
-    let seeds = seed::seeds(complex, &mut components, &radial, facets, space);
-    let mut spread = Spread::new(complex, regions, expression, leaves, facets);
+    link_patches(complex, patches, facets, &mut regions, &mut components);
+    let surroundings = seed::Surroundings { complex, leaves, patches, radial: &radial };
+    let seeds = surroundings.seeds(&mut components, facets, space);
+    let mut spread = Spread::new(complex, regions, expression, leaves.len(), facets);
     for seed in &seeds {
         spread.flood(seed);
     }
@@ -62,6 +69,28 @@ pub(super) fn classify(
 fn link(half: u32, next: u32, complex: &Complex, regions: &mut Sets, components: &mut Sets) {
     regions.join(following_side(complex, half), following_side(complex, next) ^ 1);
     components.join(complex.halves[half as usize].cell, complex.halves[next as usize].cell);
+}
+
+/// Joins the sides of patches to those of the cells that have corners in them. Nothing else is near
+/// such a corner, so all cells there are pieces of one surface.
+fn link_patches(
+    complex: &Complex,
+    patches: &Patches,
+    facets: &Facets,
+    regions: &mut Sets,
+    components: &mut Sets,
+) {
+    if patches.list.is_empty() {
+        return;
+    }
+    for half in &complex.halves {
+        let Some(patch) = facets.patch(half.origin, patches) else { continue };
+        let (cell, patch) = (half.cell, complex.first_patch + patch);
+        let faces_down = u32::from(complex.cover(cell)[0].1 < 0);
+        regions.join(2 * patch, 2 * cell + faces_down);
+        regions.join(2 * patch + 1, 2 * cell + 1 - faces_down);
+        components.join(patch, cell);
+    }
 }
 
 /// Winding numbers on their way from region to region.

@@ -7,7 +7,14 @@
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
-use super::{frame::Leaf, hierarchy::Bounds, lattice::Lattice, polygon, space::Space};
+use super::{
+    frame::Leaf,
+    hierarchy::Bounds,
+    lattice::Lattice,
+    patch::{Patches, Snapped},
+    polygon,
+    space::{NONE, Space},
+};
 use crate::geom::{
     FaceRef,
     predicates::{Int3, Plane, minus},
@@ -43,16 +50,20 @@ pub(super) struct Facets {
     pub extra: FxHashMap<(u32, u32), Vec<u32>>,
     /// Largest movement of a corner, in mm of the operation's frame.
     pub snap: f64,
+    /// Whether a facet was dropped.
+    pub has_dropped: bool,
 }
 
 impl Facets {
-    /// Snaps all leaves.
-    pub fn of(leaves: &[Leaf], lattice: &Lattice, space: &mut Space) -> Facets {
+    /// The faces of all leaves that are in no patch.
+    pub fn of(leaves: &[Leaf], patches: &Patches, lattice: &Lattice, space: &mut Space) -> Facets {
         let mut facets = Facets::default();
         let mut dropped = vec![];
         for (number, leaf) in leaves.iter().enumerate() {
-            facets.add_leaf(number as u32, leaf, lattice, space, &mut dropped);
+            let snapped = &patches.leaves[number];
+            facets.add_leaf((number as u32, leaf, snapped), lattice, space, &mut dropped);
         }
+        facets.has_dropped = !dropped.is_empty();
         facets.register(&dropped, space);
         facets
     }
@@ -101,32 +112,50 @@ impl Facets {
         self.list[facet as usize].plane
     }
 
+    /// The patch that a point borders on.
+    pub fn patch(&self, point: u32, patches: &Patches) -> Option<u32> {
+        let &(leaf, corner) = self.sources.get(point as usize)?;
+        patches.leaves[leaf as usize].patch(corner)
+    }
+
     fn add_leaf(
         &mut self,
-        number: u32,
-        leaf: &Leaf,
+        (number, leaf, snapped): (u32, &Leaf, &Snapped),
         lattice: &Lattice,
         space: &mut Space,
         dropped: &mut Vec<[u32; 3]>,
     ) {
         let mesh = leaf.solid.mesh();
-        let mut points = Vec::with_capacity(mesh.points.len());
-        for (i, &point) in mesh.points.iter().enumerate() {
-            let placed = leaf.local.point(point);
-            let local = lattice.snap(placed);
-            let moved = (lattice.place(local.map(|c| c as f64)) - placed).length();
-            self.snap = self.snap.max(moved);
-            let snapped = space.add_lattice_point(local);
-            if snapped as usize == self.sources.len() {
-                self.sources.push((number, i as u32));
-            }
-            points.push(snapped);
-        }
+        let mut points = vec![NONE; mesh.points.len()];
         let mirrors = leaf.local.mirrors();
-        for face in mesh.faces() {
+        for face in mesh.faces().filter(|f| !snapped.rests(f.index())) {
+            for &corner in face.loops().flatten() {
+                if points[corner as usize] == NONE {
+                    let source = (number, corner, leaf.local.point(mesh.points[corner as usize]));
+                    let local = snapped.points[corner as usize];
+                    points[corner as usize] = self.add_point(source, local, lattice, space);
+                }
+            }
             self.add_face(number, face, (&points, mirrors), space, dropped);
         }
         self.leaf_ends.push(self.list.len() as u32);
+    }
+
+    /// Adds a corner of a leaf that stands at `placed` and is snapped to `local`.
+    fn add_point(
+        &mut self,
+        (leaf, corner, placed): (u32, u32, DVec3),
+        local: Int3,
+        lattice: &Lattice,
+        space: &mut Space,
+    ) -> u32 {
+        let moved = (lattice.place(local.map(|c| c as f64)) - placed).length();
+        self.snap = self.snap.max(moved);
+        let point = space.add_lattice_point(local);
+        if point as usize == self.sources.len() {
+            self.sources.push((leaf, corner));
+        }
+        point
     }
 
     fn add_face(

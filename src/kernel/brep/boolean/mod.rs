@@ -4,6 +4,7 @@
 //!
 //! 1. [`frame`] moves placements out of the operation and flattens it: leaves, one expression.
 //! 2. [`lattice`] chooses a decimal lattice; [`facet`] snaps the faces of all leaves to it.
+//!    Faces of large leaves that no other leaf comes near stay out of the arrangement ([`patch`]).
 //! 3. [`space`] numbers planes and points: coplanar means the same number, and so does coincident.
 //! 4. [`intersect`] finds pairs of facets that meet ([`hierarchy`]) and the traces they leave.
 //! 5. [`arrange`] (with [`nesting`]) cuts everything in one plane into cells; facets that nothing
@@ -12,7 +13,7 @@
 //!    region for every connected component ([`seed`]), and asks the [`expression`] on both sides.
 //! 7. [`boundary`] keeps the cells whose sides differ, [`outline`] merges them into polygons and
 //!    splits where solids merely touch, [`assemble`] rounds the vertices, once, and builds the mesh;
-//!    [`origins`] carries surfaces, tags and colours through.
+//!    [`carry`] adds the patches, and [`origins`] carries surfaces, tags and colours through.
 //!
 //! Every decision is the exact sign of an integer expression (`geom::predicates` states the bit
 //! budget); doubles only filter. There is no tolerance. Coplanar and touching operands are ordinary:
@@ -35,6 +36,7 @@
 mod arrange;
 mod assemble;
 mod boundary;
+mod carry;
 mod cells;
 mod classify;
 mod expression;
@@ -46,6 +48,7 @@ mod lattice;
 mod nesting;
 mod origins;
 mod outline;
+mod patch;
 mod polygon;
 mod seed;
 mod space;
@@ -55,7 +58,10 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use self::{assemble::Assembly, cells::Complex, facet::Facets, frame::Plan, lattice::Lattice};
+use self::{
+    assemble::Assembly, cells::Complex, facet::Facets, frame::Plan, lattice::Lattice,
+    patch::Patches,
+};
 use super::polyhedron::Polyhedron;
 use crate::geom::Placement;
 
@@ -147,21 +153,22 @@ pub fn evaluate(tree: &Tree) -> Result<Evaluated, BooleanError> {
 pub fn self_union(solid: &Polyhedron) -> Result<Evaluated, BooleanError> {
     let tree = Tree::Union(vec![Tree::Leaf(Arc::new(solid.clone()))]);
     let plan = frame::plan(&tree, &Placement::IDENTITY)?;
-    arranged(&plan, false)?.ok_or(BooleanError::NotClosed)
+    arranged(&plan, false, false)?.ok_or(BooleanError::NotClosed)
 }
 
 /// Evaluates a set operation whose result stands at `outer`.
 fn evaluate_operation(tree: &Tree, outer: &Placement) -> Result<Evaluated, BooleanError> {
     let plan = frame::plan(tree, outer)?;
-    if let Some(evaluated) = arranged(&plan, true)? {
+    if let Some(evaluated) = arranged(&plan, true, true)? {
         return Ok(evaluated);
     }
     // A leaf that crosses itself, as it came or after snapping: compare all facets with all.
-    arranged(&plan, false)?.ok_or(BooleanError::NotClosed)
+    arranged(&plan, false, false)?.ok_or(BooleanError::NotClosed)
 }
 
-/// Evaluates a plan; `None` if its leaves contradict themselves.
-fn arranged(plan: &Plan, trusted: bool) -> Result<Option<Evaluated>, BooleanError> {
+/// Evaluates a plan; `None` if its leaves contradict themselves. Faces may rest in patches only in
+/// leaves that are trusted not to cross themselves.
+fn arranged(plan: &Plan, trusted: bool, resting: bool) -> Result<Option<Evaluated>, BooleanError> {
     let corners: usize = plan.leaves.iter().map(|l| l.solid.mesh().points.len()).sum();
     if corners > CORNERS {
         return Err(BooleanError::TooLarge);
@@ -169,21 +176,33 @@ fn arranged(plan: &Plan, trusted: bool) -> Result<Option<Evaluated>, BooleanErro
     let (min, max) = facet::extent(&plan.leaves);
     let lattice = Lattice::covering(min, max).ok_or(BooleanError::NotFinite)?;
     let mut space = space::Space::default();
-    let mut facets = Facets::of(&plan.leaves, &lattice, &mut space);
-    let complex = complex(&mut facets, &mut space, trusted);
+    let patches = Patches::of(&plan.leaves, &lattice, resting);
+    let mut facets = Facets::of(&plan.leaves, &patches, &lattice, &mut space);
+    if facets.has_dropped && !patches.list.is_empty() {
+        // What is left of a dropped facet may have to split an edge of a patch.
+        return arranged(plan, trusted, false);
+    }
+    let complex = complex(&mut facets, &patches, &mut space, trusted);
+    let leaves = (&plan.leaves[..], &patches);
     let Some(sides) =
-        classify::classify(&complex, &plan.expression, plan.leaves.len(), &mut facets, &mut space)
+        classify::classify(&complex, &plan.expression, leaves, &mut facets, &mut space)
     else {
         return Ok(None);
     };
     let (facets, space, complex, sides) = (&facets, &space, &complex, &sides);
-    let mesh = Assembly { plan, lattice: &lattice, facets, space, complex, sides }.mesh();
+    let (lattice, patches) = (&lattice, &patches);
+    let mesh = Assembly { plan, lattice, patches, facets, space, complex, sides }.mesh();
     let Ok(solid) = Polyhedron::new(mesh) else { return Ok(None) };
     Ok(Some(Evaluated { solid, snap: plan.snap.max(facets.snap), step: lattice.step() }))
 }
 
 /// Cuts all facets into cells.
-fn complex(facets: &mut Facets, space: &mut space::Space, trusted: bool) -> Complex {
+fn complex(
+    facets: &mut Facets,
+    patches: &Patches,
+    space: &mut space::Space,
+    trusted: bool,
+) -> Complex {
     let mut meetings = intersect::meetings(facets, space, trusted);
     let mut complex = Complex::default();
     let mut groups: Vec<(u32, u32)> = vec![];
@@ -208,6 +227,7 @@ fn complex(facets: &mut Facets, space: &mut space::Space, trusted: bool) -> Comp
         let traces: Vec<_> = members.iter().flat_map(range).copied().collect();
         arrange::arrange(&members, &traces, facets, space, trusted, &mut complex);
     }
+    complex.add_patches(patches.list.iter().map(|p| facets.of_leaf(p.leaf as usize).start as u32));
     complex.finish(space.point_count());
     complex
 }

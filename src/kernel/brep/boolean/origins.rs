@@ -100,7 +100,7 @@ impl<'a> Labels<'a> {
     }
 
     /// The number of a face's origin in the result; equal origins get one number.
-    fn origin(&mut self, leaf: u32, face: u32) -> u32 {
+    pub fn origin(&mut self, leaf: u32, face: u32) -> u32 {
         let source = &self.plan.leaves[leaf as usize];
         let face = source.solid.mesh().face(face as usize);
         let origins = &mut self.origins;

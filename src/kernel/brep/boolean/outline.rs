@@ -32,7 +32,9 @@ pub(super) struct Outline {
 
 impl Outline {
     /// Traces the outlines.
-    pub fn of(boundary: &Boundary) -> Outline {
+    ///
+    /// `borders` are the points at which patches border: only one fan is there, and it stays.
+    pub fn of(boundary: &Boundary, borders: &[bool]) -> Outline {
         let count = boundary.twin.len();
         let mut loops = loops(boundary);
         loops.sort_by_key(|l| l.0);
@@ -52,8 +54,15 @@ impl Outline {
             }
         }
         let mut sets = Sets::new(count);
+        let mut leaving = vec![NONE; borders.len()];
         for half in boundary.outer() {
-            sets.join(half, outline.next[boundary.twin[half as usize] as usize]);
+            let point = boundary.origin[half as usize] as usize;
+            if borders[point] {
+                leaving[point] = half.min(leaving[point]);
+                sets.join(half, leaving[point]);
+            } else {
+                sets.join(half, outline.next[boundary.twin[half as usize] as usize]);
+            }
         }
         for half in boundary.outer() {
             outline.vertex[half as usize] = sets.find(half);
@@ -62,7 +71,12 @@ impl Outline {
     }
 
     /// Whether each vertex is dropped, by the half-edge that stands for it.
-    pub fn dropped(&self, boundary: &Boundary, complex: &Complex, space: &Space) -> Vec<bool> {
+    pub fn dropped(
+        &self,
+        (boundary, borders): (&Boundary, &[bool]),
+        complex: &Complex,
+        space: &Space,
+    ) -> Vec<bool> {
         let mut leaving = vec![0u32; boundary.twin.len()];
         for half in boundary.outer() {
             leaving[self.vertex[half as usize] as usize] += 1;
@@ -72,7 +86,10 @@ impl Outline {
         for half in boundary.outer().filter(|&h| self.vertex[h as usize] == h) {
             standing[boundary.origin[half as usize] as usize] += 1;
         }
-        let alone = |half: u32| standing[boundary.origin[half as usize] as usize] == 1;
+        let alone = |half: u32| {
+            let point = boundary.origin[half as usize] as usize;
+            standing[point] == 1 && !borders[point]
+        };
         let mut dropped = vec![false; boundary.twin.len()];
         let straight = Straight { outline: self, boundary, complex, space };
         for half in boundary.outer() {

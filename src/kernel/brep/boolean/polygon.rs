@@ -29,6 +29,18 @@ pub(super) fn area_vector<'a>(
     sum
 }
 
+/// The same of loops of lattice points.
+pub(super) fn area_of(loops: &[Vec<Int3>]) -> [i128; 3] {
+    let mut sum = [0i128; 3];
+    for corners in loops {
+        for pair in corners[1..].windows(2) {
+            let part = cross(minus(pair[0], corners[0]), minus(pair[1], corners[0]));
+            (0..3).for_each(|i| sum[i] += part[i]);
+        }
+    }
+    sum
+}
+
 /// Whether all corners lie in one plane, enclose an area, and none is met twice.
 pub(super) fn is_flat(loops: &[Vec<u32>], at: &impl Fn(u32) -> Int3) -> bool {
     let normal = area_vector(loops.iter().map(Vec::as_slice), at);

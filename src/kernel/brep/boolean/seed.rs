@@ -11,7 +11,9 @@ use std::cmp::Ordering;
 use super::{
     cells::Complex,
     facet::Facets,
+    frame::Leaf,
     hierarchy::{Bounds, Hierarchy},
+    patch::Patches,
     polygon,
     space::Space,
     union_find::Sets,
@@ -34,32 +36,111 @@ struct Shell {
     component: u32,
     leaf: u32,
     facets: Vec<u32>,
+    patches: Vec<u32>,
     bounds: Bounds,
 }
 
-/// The seeds of all components.
-pub(super) fn seeds(
-    complex: &Complex,
-    components: &mut Sets,
-    radial: &[(u32, Vec<u32>)],
-    facets: &mut Facets,
-    space: &mut Space,
-) -> Vec<Seed> {
-    let of_cell: Vec<u32> =
-        (0..complex.cell_count() as u32).map(|cell| components.find(cell)).collect();
-    let firsts = first_points(complex, &of_cell, space);
-    let shells = shells(complex, &of_cell, facets);
-    let tree = Hierarchy::new(shells.iter().map(|s| s.bounds));
-    let fans = fans(complex, &of_cell, &firsts);
-    let mut seeds = vec![];
-    for ((component, point), halves) in firsts.into_iter().zip(fans) {
-        let side = unbounded_side(complex, point, &halves, radial, facets, space);
-        let place = beyond(complex, point, halves[0], facets, space);
-        let around = around(component, place, &shells, &tree, facets, space);
-        seeds.push(Seed { side, around });
-    }
-    seeds
+/// What a component may stand in.
+pub(super) struct Surroundings<'a> {
+    pub complex: &'a Complex,
+    pub leaves: &'a [Leaf],
+    pub patches: &'a Patches,
+    /// Half-edges in radial order around edges with more than two.
+    pub radial: &'a [(u32, Vec<u32>)],
 }
+
+impl Surroundings<'_> {
+    /// The seeds of all components.
+    pub fn seeds(
+        &self,
+        components: &mut Sets,
+        facets: &mut Facets,
+        space: &mut Space,
+    ) -> Vec<Seed> {
+        let Surroundings { complex, radial, .. } = *self;
+        let of_cell: Vec<u32> =
+            (0..complex.cell_count() as u32).map(|cell| components.find(cell)).collect();
+        let firsts = first_points(complex, &of_cell, space);
+        let shells = self.shells(&of_cell, facets);
+        let tree = Hierarchy::new(shells.iter().map(|s| s.bounds));
+        let fans = fans(complex, &of_cell, &firsts);
+        let mut seeds = vec![];
+        for ((component, point), halves) in firsts.into_iter().zip(fans) {
+            let side = unbounded_side(complex, point, &halves, radial, facets, space);
+            let place = beyond(complex, point, halves[0], facets, space);
+            let around = self.around(component, place, (&shells, &tree), facets, space);
+            seeds.push(Seed { side, around });
+        }
+        seeds
+    }
+
+    fn shells(&self, of_cell: &[u32], facets: &Facets) -> Vec<Shell> {
+        let complex = self.complex;
+        // Component, leaf, and a facet, or a patch that stands behind all facets.
+        let mut owned: Vec<(u32, u32, bool, u32)> = vec![];
+        for cell in 0..complex.first_patch {
+            for &(facet, _) in complex.cover(cell) {
+                let leaf = facets.list()[facet as usize].leaf;
+                owned.push((of_cell[cell as usize], leaf, false, facet));
+            }
+        }
+        for (number, patch) in (0u32..).zip(&self.patches.list) {
+            let component = of_cell[(complex.first_patch + number) as usize];
+            owned.push((component, patch.leaf, true, number));
+        }
+        owned.sort_unstable();
+        owned.dedup();
+        let runs = owned.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1));
+        runs.map(|run| self.shell(run, facets)).collect()
+    }
+
+    fn shell(&self, run: &[(u32, u32, bool, u32)], facets: &Facets) -> Shell {
+        let of = |patches: bool| run.iter().filter(move |o| o.2 == patches).map(|o| o.3);
+        let (members, patches): (Vec<u32>, Vec<u32>) = (of(false).collect(), of(true).collect());
+        let bounds = members.iter().map(|&f| facets.list()[f as usize].bounds);
+        let resting = patches.iter().map(|&p| self.patches.list[p as usize].bounds);
+        let bounds = bounds.chain(resting).fold(Bounds::EMPTY, Bounds::with);
+        Shell { component: run[0].0, leaf: run[0].1, facets: members, patches, bounds }
+    }
+
+    /// The winding numbers of what is around a component.
+    fn around(
+        &self,
+        component: u32,
+        place: Beyond,
+        (shells, tree): (&[Shell], &Hierarchy),
+        facets: &Facets,
+        space: &Space,
+    ) -> Vec<(u32, i32)> {
+        let here = place.point.map(|c| c as i32);
+        let mut found = vec![];
+        tree.overlapping(&Bounds { min: here, max: here }, |s| {
+            let shell = &shells[s as usize];
+            if shell.component != component {
+                let pieces = self.pieces(shell, facets, space);
+                let winding = spherical_winding(place.point, &pieces)
+                    .unwrap_or_else(|| ray_winding(place, &pieces));
+                if winding != 0 {
+                    found.push((shell.leaf, winding));
+                }
+            }
+        });
+        found.sort_unstable();
+        found
+    }
+
+    /// The polygons of a shell.
+    fn pieces(&self, shell: &Shell, facets: &Facets, space: &Space) -> Vec<Piece> {
+        let at = |p: u32| space.lattice_point(p).expect("a corner is a lattice point");
+        let place = |l: &[u32]| l.iter().map(|&p| at(p)).collect();
+        let facets = shell.facets.iter().map(|&f| facets.loops(f).map(place).collect());
+        let resting = shell.patches.iter().flat_map(|&p| self.patches.triangles(p, self.leaves));
+        facets.chain(resting.map(|t| vec![t.to_vec()])).collect()
+    }
+}
+
+/// A polygon: its loops.
+type Piece = Vec<Vec<Int3>>;
 
 /// The first lattice point of every component, by x, then y, then z. It is the first of all its
 /// points, since the cells lie within the facets.
@@ -170,62 +251,17 @@ fn beyond(complex: &Complex, point: u32, half: u32, facets: &Facets, space: &Spa
 /// The shares of two edges in a direction between them.
 const ODD: [i64; 2] = [618_034, 1_414_213];
 
-fn shells(complex: &Complex, of_cell: &[u32], facets: &Facets) -> Vec<Shell> {
-    let mut owned: Vec<(u32, u32, u32)> = vec![];
-    for cell in 0..complex.cell_count() as u32 {
-        for &(facet, _) in complex.cover(cell) {
-            owned.push((of_cell[cell as usize], facets.list()[facet as usize].leaf, facet));
-        }
-    }
-    owned.sort_unstable();
-    owned.dedup();
-    let shell = |run: &[(u32, u32, u32)]| {
-        let members: Vec<u32> = run.iter().map(|o| o.2).collect();
-        let bounds = members
-            .iter()
-            .fold(Bounds::EMPTY, |all, &f| all.with(facets.list()[f as usize].bounds));
-        Shell { component: run[0].0, leaf: run[0].1, facets: members, bounds }
-    };
-    owned.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).map(shell).collect()
-}
-
-fn around(
-    component: u32,
-    place: Beyond,
-    shells: &[Shell],
-    tree: &Hierarchy,
-    facets: &Facets,
-    space: &Space,
-) -> Vec<(u32, i32)> {
-    let here = place.point.map(|c| c as i32);
-    let mut found = vec![];
-    tree.overlapping(&Bounds { min: here, max: here }, |s| {
-        let shell = &shells[s as usize];
-        if shell.component != component {
-            let winding = spherical_winding(place.point, shell, facets, space)
-                .unwrap_or_else(|| ray_winding(place, shell, facets, space));
-            if winding != 0 {
-                found.push((shell.leaf, winding));
-            }
-        }
-    });
-    found.sort_unstable();
-    found
-}
-
 /// How far a sum of solid angles may be from a whole number of spheres and still count as one.
 const WHOLE: f64 = 1e-3;
 
 /// The winding number of a shell around a point by the spherical projection; `None` where the point
 /// may lie on the shell.
-fn spherical_winding(at: Int3, shell: &Shell, facets: &Facets, space: &Space) -> Option<i32> {
-    let here = at.map(|c| c as i32);
-    let here = Bounds { min: here, max: here };
+fn spherical_winding(at: Int3, shell: &[Piece]) -> Option<i32> {
     let mut sum = 0.0;
-    for &facet in &shell.facets {
-        match solid_angle(at, facet, facets, space) {
+    for piece in shell {
+        match solid_angle(at, piece) {
             Some(angle) => sum += angle,
-            None if facets.list()[facet as usize].bounds.meets(&here) => return None,
+            None if in_box(at, piece) => return None,
             None => {}
         }
     }
@@ -233,15 +269,22 @@ fn spherical_winding(at: Int3, shell: &Shell, facets: &Facets, space: &Space) ->
     ((spheres - spheres.round()).abs() < WHOLE).then_some(spheres.round() as i32)
 }
 
-/// The signed solid angle of a facet, positive seen from behind (van Oosterom and Strackee 1983);
+/// Whether a point is in the box of a polygon.
+fn in_box(at: Int3, piece: &Piece) -> bool {
+    (0..3).all(|i| {
+        let along = || piece[0].iter().map(|c| c[i]);
+        along().min().is_some_and(|low| low <= at[i]) && along().max().is_some_and(|c| at[i] <= c)
+    })
+}
+
+/// The signed solid angle of a polygon, positive seen from behind (van Oosterom and Strackee 1983);
 /// `None` for a point in its plane.
-fn solid_angle(at: Int3, facet: u32, facets: &Facets, space: &Space) -> Option<f64> {
-    let arm = |p: u32| minus(space.lattice_point(p).expect("a corner is a lattice point"), at);
+fn solid_angle(at: Int3, piece: &Piece) -> Option<f64> {
     let (mut volume, mut angle) = (0i128, 0.0);
-    for corners in facets.loops(facet) {
-        let a = arm(corners[0]);
+    for corners in piece {
+        let a = minus(corners[0], at);
         for pair in corners[1..].windows(2) {
-            let (b, c) = (arm(pair[0]), arm(pair[1]));
+            let (b, c) = (minus(pair[0], at), minus(pair[1], at));
             let product = triple(a, b, c);
             volume += product;
             angle += 2.0 * libm::atan2(product as f64, denominator(a, b, c));
@@ -271,18 +314,16 @@ struct Beyond {
 
 /// The winding number of a shell around such a place, which is not on the shell: signed crossings of
 /// the ray to the left.
-fn ray_winding(place: Beyond, shell: &Shell, facets: &Facets, space: &Space) -> i32 {
-    let point = |p: u32| space.lattice_point(p).expect("a corner is a lattice point");
+fn ray_winding(place: Beyond, shell: &[Piece]) -> i32 {
     let mut winding = 0;
-    for &facet in &shell.facets {
-        let normal = polygon::area_vector(facets.loops(facet), &point);
+    for piece in shell {
+        let normal = polygon::area_of(piece);
         let facing = normal[0].signum();
-        if facing == 0 || !shadow_covers(place, facet, facets, &point) {
+        if facing == 0 || !shadow_covers(place, piece) {
             continue;
         }
-        let corner = point(facets.loops(facet).next().map_or(0, |l| l[0]));
         let along = |v: Int3| (0..3).map(|i| normal[i] * i128::from(v[i])).sum::<i128>();
-        let side = first_sign([along(minus(place.point, corner)), along(place.along)]);
+        let side = first_sign([along(minus(place.point, piece[0][0])), along(place.along)]);
         // The place is to the right of the facet's plane.
         if side * facing > 0 {
             winding -= facing as i32;
@@ -296,13 +337,13 @@ fn first_sign<const N: usize>(terms: [i128; N]) -> i128 {
     terms.into_iter().find(|&t| t != 0).unwrap_or(0).signum()
 }
 
-/// Whether a facet, seen along x, covers a place: an odd number of its edges run above.
-fn shadow_covers(place: Beyond, facet: u32, facets: &Facets, point: &impl Fn(u32) -> Int3) -> bool {
+/// Whether a polygon, seen along x, covers a place: an odd number of its edges run above.
+fn shadow_covers(place: Beyond, piece: &Piece) -> bool {
     let Beyond { point: at, along } = place;
     let is_right = |c: Int3| first_sign([i128::from(c[1] - at[1]), -i128::from(along[1]), 1]) > 0;
     let mut odd = false;
-    for (a, b) in facets.edges(facet) {
-        let (a, b) = (point(a), point(b));
+    let edges = piece.iter().flat_map(|l| l.iter().zip(l.iter().cycle().skip(1)));
+    for (&a, &b) in edges {
         if is_right(a) == is_right(b) {
             continue;
         }
@@ -319,50 +360,30 @@ fn shadow_covers(place: Beyond, facet: u32, facets: &Facets, point: &impl Fn(u32
 mod tests {
     use super::*;
 
-    /// A tetrahedron with a corner at the origin, wound so that its faces look outwards.
-    fn tetrahedron() -> (Facets, Space, Shell) {
-        let mut mesh = crate::geom::PolyMesh::with_points(
-            [[0.0; 3], [8.0, 0.0, 0.0], [0.0, 8.0, 0.0], [0.0, 0.0, 8.0]]
-                .map(glam::DVec3::from_array)
-                .to_vec(),
-        );
-        let origin = mesh.add_origin(crate::geom::Origin::of(crate::geom::Surface::Plane));
-        for corners in [[0u32, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]] {
-            let plane = mesh.add_plane();
-            mesh.push_face(&[corners], plane, origin);
-        }
-        let solid = std::sync::Arc::new(crate::kernel::brep::Polyhedron::trusted(mesh));
-        let place = crate::geom::Placement::IDENTITY;
-        let leaf = super::super::frame::Leaf { solid, local: place, full: place };
-        let (min, max) = super::super::facet::extent(std::slice::from_ref(&leaf));
-        let lattice = super::super::lattice::Lattice::covering(min, max).expect("finite");
-        let mut space = Space::default();
-        let facets = Facets::of(&[leaf], &lattice, &mut space);
-        let bounds = facets.list().iter().fold(Bounds::EMPTY, |all, f| all.with(f.bounds));
-        let shell = Shell { component: 0, leaf: 0, facets: vec![0, 1, 2, 3], bounds };
-        (facets, space, shell)
+    /// A tetrahedron wound so that its faces look outwards.
+    fn tetrahedron() -> Vec<Piece> {
+        let corners = [[0, 0, 0], [800, 0, 0], [0, 800, 0], [0, 0, 800]];
+        let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        faces.map(|f| vec![f.map(|c: usize| corners[c]).to_vec()]).to_vec()
     }
 
     #[test]
     fn projection_and_ray_agree() {
-        let (facets, space, shell) = tetrahedron();
-        let corner = space.lattice_point(0).expect("a corner");
-        let step = (space.lattice_point(1).expect("a corner")[0] - corner[0]) / 8;
+        let shell = tetrahedron();
         for code in 0..6 * 6 * 6 {
-            let at = [code % 6, code / 6 % 6, code / 36].map(|c| (2 * c - 3) * step);
-            let at = [0, 1, 2].map(|i| at[i] + corner[i] + i as i64);
-            let place = Beyond { point: at, along: [1, 2, 3] };
-            let by_ray = ray_winding(place, &shell, &facets, &space);
-            assert_eq!(spherical_winding(at, &shell, &facets, &space), Some(by_ray), "{at:?}");
+            let at = [code % 6, code / 6 % 6, code / 36].map(|c| (2 * c - 3) * 100);
+            let at = [0, 1, 2].map(|i| at[i] + i as i64);
+            let by_ray = ray_winding(Beyond { point: at, along: [1, 2, 3] }, &shell);
+            assert_eq!(spherical_winding(at, &shell), Some(by_ray), "{at:?}");
         }
     }
 
     #[test]
     fn the_ray_decides_at_a_corner() {
-        let (facets, space, shell) = tetrahedron();
-        let point = space.lattice_point(0).expect("a corner");
-        assert_eq!(spherical_winding(point, &shell, &facets, &space), None);
-        let at = |along: Int3| ray_winding(Beyond { point, along }, &shell, &facets, &space);
+        let shell = tetrahedron();
+        let point = [0; 3];
+        assert_eq!(spherical_winding(point, &shell), None);
+        let at = |along: Int3| ray_winding(Beyond { point, along }, &shell);
         assert_eq!(at([1, 1, 1]), 1);
         assert_eq!(at([3, 1, 2]), 1);
         assert_eq!(at([-1, -1, -1]), 0);
