@@ -66,12 +66,12 @@ def solid(path):
     return leaf
 
 
-def union(tree, leaves):
+def evaluated(tree, leaves):
     """The tree evaluated by Manifold."""
     if isinstance(tree, int):
         return leaves[tree]
     kind, *parts = tree
-    parts = [union(part, leaves) for part in parts]
+    parts = [evaluated(part, leaves) for part in parts]
     operations = {
         "union": manifold3d.OpType.Add,
         "difference": manifold3d.OpType.Subtract,
@@ -82,7 +82,7 @@ def union(tree, leaves):
 
 def time_manifold(tree, leaves):
     start = time.perf_counter()
-    result = union(tree, leaves)
+    result = evaluated(tree, leaves)
     triangles = result.num_tri()
     return {
         "ms": (time.perf_counter() - start) * 1e3,
