@@ -404,21 +404,6 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Evaluates the top-level values, so that a mistake in one is told even when no output uses it.
-    pub fn bindings(&mut self, instance: InstanceId) {
-        self.steps_taken = 0;
-        if self.admitted(instance).is_err() {
-            return;
-        }
-        let unit = self.unit_of(instance);
-        for (number, global) in unit.globals.iter().enumerate() {
-            if global.kind == GlobalKind::Value {
-                let value = self.global(instance, number as u32, global.name.span);
-                value.err().iter().for_each(|failure| self.report(failure));
-            }
-        }
-    }
-
     /// Makes the next request evaluate anew what `check` saw without geometry: instances whose
     /// asserts it skipped, and all values, which may hold such instances.
     fn forget(&mut self) {

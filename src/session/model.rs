@@ -223,14 +223,9 @@ impl<'s> Model<'s> {
         Ok((path, bytes))
     }
 
-    /// Evaluates the outputs of the given names, or all of them, to solids; without names the values
-    /// that no output uses too.
+    /// Evaluates the outputs of the given names, or all of them, to solids.
     fn parts(&mut self, names: &[String], diagnostics: &mut Vec<Diagnostic>) -> Vec<Part> {
         let Some(instance) = self.instance else { return vec![] };
-        if names.is_empty() {
-            during(self.session.watch, Phase::Eval, || self.evaluator.bindings(instance));
-            diagnostics.extend(self.evaluator.take_diagnostics());
-        }
         let mut parts = vec![];
         for output in self.evaluator.outputs(instance) {
             if !names.is_empty() && !names.iter().any(|name| **name == *output.name) {
