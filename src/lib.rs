@@ -23,7 +23,7 @@
 //! ```
 //! use katachi::{base::SourceId, syntax::parse};
 //! let (_, diagnostics) = parse(SourceId(0), "w = 40mm +\n");
-//! assert_eq!(diagnostics[0].span().unwrap().start, 11);
+//! assert_eq!(diagnostics[0].span().unwrap().start, 9);
 //! ```
 //!
 //! Solids can be had without the language ([`kernel::brep`]); set operations are exact, so that a flush
