@@ -27,8 +27,10 @@ use katachi::{
 };
 use serde_json::{Value, json};
 
-/// The models by name.
-const MODELS: &[(&str, fn() -> Tree)] = &[
+/// A name and what it stands for.
+type Model = (&'static str, fn() -> Tree);
+
+const MODELS: &[Model] = &[
     ("spheres24", || spheres(24)),
     ("spheres224", || spheres(224)),
     ("spheres708", || spheres(708)),
@@ -59,6 +61,7 @@ fn model(name: &str) -> Tree {
 }
 
 /// Evaluates the model for each line of the input and answers with the time.
+#[allow(clippy::disallowed_methods, reason = "a benchmark reads the clock")]
 fn serve(tree: &Tree) {
     for line in io::stdin().lock().lines() {
         line.expect("standard input is text");
