@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Times the set operations of Katachi and of manifold3d on the same leaves, in turn, and prints a table.
 
-    python3 -m venv /tmp/venv && /tmp/venv/bin/pip install numpy manifold3d
+    python3 -m venv venv && venv/bin/pip install numpy manifold3d
     cargo build --release --bench set_operations
-    /tmp/venv/bin/python tests/bench/compare.py [--runs 5] [--openscad] [model ...]
+    venv/bin/python tests/bench/compare.py [--runs 5] [--openscad] [model ...]
 
 Leaves are made by Katachi and handed to Manifold as triangles; only the operation is timed, with all
 threads that both take by themselves. Runs alternate, and the median of each side counts. With
