@@ -137,8 +137,8 @@ impl<'s> Lexer<'s> {
         let start = self.raw.span().start;
         let parts = number::measure(&self.text[start..]);
         self.raw.bump(start + parts.end - self.raw.span().end);
-        match number::read(self.raw.slice()) {
-            Ok(_) => self.push(Token::Number),
+        match number::check(self.raw.slice(), parts) {
+            Ok(()) => self.push(Token::Number),
             Err(fault) => {
                 self.push(Token::Bad);
                 let diagnostic = self.number_fault(fault, start, parts);

@@ -10,6 +10,7 @@ mod item;
 mod operator;
 mod primary;
 mod production;
+mod reader;
 mod recover;
 mod state;
 mod stmt;
@@ -61,7 +62,7 @@ fn read(source: SourceId, text: &str) -> (Program, Vec<Diagnostic>, Productions)
     let balanced = bracket::balance(source, text, tokens);
     diagnostics.extend(balanced.diagnostics);
     let tokens = depth::limit(source, balanced.tokens, &mut diagnostics);
-    let tokens = newline::newlines(text, &tokens);
+    let tokens = newline::newlines(text, tokens);
     let mut state = State::new(source, text, &tokens);
     let (items, faults) =
         item::program().parse_with_state(&tokens.kinds, &mut state).into_output_errors();
