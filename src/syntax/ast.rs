@@ -52,7 +52,8 @@ pub enum ItemKind {
     Group(Text),
     /// `set name = expr`.
     Set {
-        /// `tolerance`, `kernel` or `seed`.
+        /// `tolerance` (the chord error of curves), `kernel` (what makes the solids) or `seed` (what
+        /// functions with a `seed` of their own, such as `noise`, take when none is given).
         name: Name,
         /// The value.
         value: Expr,
@@ -455,6 +456,27 @@ pub enum UnitName {
     Rad,
     /// Full turn, 360 degrees.
     Turn,
+}
+
+impl UnitName {
+    /// How long one of a unit of length is; `None` for angles.
+    ///
+    /// ```
+    /// use katachi::syntax::ast::UnitName;
+    /// assert_eq!(UnitName::In.millimetres(), Some(25.4));
+    /// assert_eq!(UnitName::Deg.millimetres(), None);
+    /// ```
+    pub const fn millimetres(self) -> Option<f64> {
+        match self {
+            UnitName::Um => Some(0.001),
+            UnitName::Mm => Some(1.0),
+            UnitName::Cm => Some(10.0),
+            UnitName::M => Some(1000.0),
+            UnitName::In => Some(25.4),
+            UnitName::Ft => Some(304.8),
+            UnitName::Deg | UnitName::Rad | UnitName::Turn => None,
+        }
+    }
 }
 
 /// A field of a record.

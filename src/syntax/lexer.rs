@@ -31,7 +31,8 @@ pub struct Lexed {
 /// assert_eq!(lexed.comments.len(), 1);
 /// ```
 pub fn lex(source: SourceId, text: &str) -> Lexed {
-    let out = Lexed { tokens: Tokens::with_capacity(text.len() / 3), ..Lexed::default() };
+    // Room for the densest texts; what is not used is never touched.
+    let out = Lexed { tokens: Tokens::with_capacity(text.len() / 2), ..Lexed::default() };
     let mut lexer = Lexer { source, text, raw: Token::lexer(text), out, strings: vec![] };
     while let Some(token) = lexer.raw.next() {
         lexer.take(token);

@@ -52,7 +52,9 @@ pub fn newlines(text: &str, mut tokens: Tokens) -> Tokens {
         let kind = tokens.kinds[index];
         let before = kept.checked_sub(1).map(|last| tokens.kinds[last]);
         match kind {
-            Token::Newline if !ends_statement(text, &tokens, index, open.last(), before) => continue,
+            Token::Newline if !ends_statement(text, &tokens, index, open.last(), before) => {
+                continue;
+            }
             Token::Doc if !open.is_empty() => continue,
             Token::LParen
             | Token::LambdaParen

@@ -36,12 +36,7 @@ impl Evaluator<'_> {
     }
 
     /// `and` and `or`: what comes behind the first operand that is `decisive` is not evaluated.
-    fn truth_chain(
-        &mut self,
-        frame: &Frame,
-        chain: &ChainCode,
-        decisive: bool,
-    ) -> Outcome<Value> {
+    fn truth_chain(&mut self, frame: &Frame, chain: &ChainCode, decisive: bool) -> Outcome<Value> {
         for operand in chain.operands() {
             if self.truth(frame, operand)? == decisive {
                 return Ok(Value::Bool(decisive));

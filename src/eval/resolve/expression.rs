@@ -7,8 +7,8 @@ use crate::{
         dimension::{literal, unit_factor, unit_text},
         stack::deep,
         unit::{
-            ArgumentCode, BinderCode, CallCode, ChainCode, Code, CodeId, ForCode, MethodCode, RangeCode,
-            RecordPart, TextPart,
+            ArgumentCode, BinderCode, CallCode, ChainCode, Code, CodeId, ForCode, MethodCode,
+            RangeCode, RecordPart, TextPart,
         },
         value::{Value, number_text},
     },

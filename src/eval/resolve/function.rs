@@ -147,20 +147,13 @@ impl Resolver<'_> {
 
     fn ending(&mut self, expr: &ast::Expr, ending: Ending) -> CodeId {
         match (&expr.kind, ending) {
-            (ExprKind::If(decision), Ending::Element) => {
-                self.decision(decision, ending, expr.span)
-            }
+            (ExprKind::If(decision), Ending::Element) => self.decision(decision, ending, expr.span),
             _ => self.expression(expr),
         }
     }
 
     /// `if`; without `else` only where an element may be dropped.
-    pub fn decision(
-        &mut self,
-        decision: &ast::If,
-        ending: Ending,
-        span: Span,
-    ) -> CodeId {
+    pub fn decision(&mut self, decision: &ast::If, ending: Ending, span: Span) -> CodeId {
         if decision.otherwise.is_none() && ending != Ending::Element {
             let message = "this `if` has no `else`, so it has no value when its condition is false";
             let error = Diagnostic::error(base::Code::Syntax, message).label(span, "").help(

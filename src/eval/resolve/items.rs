@@ -44,6 +44,7 @@ const PENDING: CodeId = CodeId(u32::MAX);
 
 impl Resolver<'_> {
     pub fn program(&mut self, program: &ast::Program) {
+        self.unit.names.reserve(program.items.len());
         for item in &program.items {
             self.declare(item);
         }

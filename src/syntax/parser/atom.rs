@@ -4,10 +4,7 @@ use std::sync::Arc;
 
 use chumsky::prelude::*;
 
-use super::{
-    Boxed, Extra, Fault, Input, Parse, Production,
-    state::here,
-};
+use super::{Boxed, Extra, Fault, Input, Parse, Production, state::here};
 use crate::syntax::{
     ast::{Expr, Name, Piece, Text},
     text,

@@ -45,8 +45,7 @@ pub(super) fn expression<'s>(input: &mut Reader<'s, '_>, forms: &Forms<'s>) -> O
 pub(super) fn lambda<'s>(expr: impl Parse<'s, Expr>) -> Boxed<'s, ExprKind> {
     let single = name().map(|name| vec![name]);
     let several = name().separated_by(token(Token::Comma)).allow_trailing().collect::<Vec<Name>>();
-    let several =
-        token(Token::LambdaParen).ignore_then(several).then_ignore(token(Token::RParen));
+    let several = token(Token::LambdaParen).ignore_then(several).then_ignore(token(Token::RParen));
     let params = single.or(several).then_ignore(token(Token::FatArrow));
     let lambda = params.then(expr.map(Arc::new));
     lambda.map(|(params, body)| ExprKind::Lambda { params, body }).boxed()

@@ -11,9 +11,7 @@ use super::{
     state::{Rows, here},
 };
 use crate::syntax::{
-    ast::{
-        Argument, Binder, Block, Expr, ExprKind, Field, For, If, Member, Name, Stmt, StmtKind,
-    },
+    ast::{Argument, Binder, Block, Expr, ExprKind, Field, For, If, Member, Name, Stmt, StmtKind},
     token::{Token, TokenSet},
 };
 
@@ -184,11 +182,7 @@ const PLAIN: TokenSet =
     TokenSet::of(&[Token::Number, Token::True, Token::False, Token::Bad]).or(TokenSet::NAMES);
 
 /// "(" expr ")" | "[" [ expr { "," expr } [","] ] "]"
-fn bracketed<'s>(
-    input: &mut Reader<'s, '_>,
-    forms: &Forms<'s>,
-    opener: Token,
-) -> Option<ExprKind> {
+fn bracketed<'s>(input: &mut Reader<'s, '_>, forms: &Forms<'s>, opener: Token) -> Option<ExprKind> {
     if opener == Token::LParen {
         let inner = inside(input, Token::RParen, |input| expression(input, forms))?;
         return Some(ExprKind::Paren(Box::new(inner)));

@@ -34,9 +34,8 @@ pub(super) fn place(input: &Reader<'_, '_>) -> usize {
 /// Remembers that one of these tokens could have stood here.
 #[inline]
 pub(super) fn note(input: &mut Reader<'_, '_>, expected: TokenSet) {
-    let missing = custom::<_, Input, (), Extra>(move |input| {
-        Err(Fault { at: place(input), expected })
-    });
+    let missing =
+        custom::<_, Input, (), Extra>(move |input| Err(Fault { at: place(input), expected }));
     let _ = input.parse(missing.or_not());
 }
 
@@ -80,6 +79,7 @@ pub(super) fn recover<'s, 'p, T>(
 /// What has been noted farthest on, and is forgotten by this.
 fn fault(input: &mut Reader<'_, '_>) -> Fault {
     let at = place(input);
-    let missing = custom::<_, Input, (), Extra>(move |_| Err(Fault { at, expected: TokenSet::EMPTY }));
+    let missing =
+        custom::<_, Input, (), Extra>(move |_| Err(Fault { at, expected: TokenSet::EMPTY }));
     input.parse(missing).expect_err("it fails always")
 }

@@ -77,9 +77,7 @@ fn named_error(state: &mut State<'_>, tokens: &[Token], start: usize, end: usize
     let span = state.span(start, end);
     let error = Expr { kind: ExprKind::Error, span };
     let kind = match defined(tokens) {
-        Some(at) => {
-            StmtKind::Bind { name: state.name(start + at), ty: None, value: error }
-        }
+        Some(at) => StmtKind::Bind { name: state.name(start + at), ty: None, value: error },
         None => StmtKind::Expr(error),
     };
     Stmt { kind, span }

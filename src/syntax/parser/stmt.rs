@@ -91,9 +91,7 @@ impl<'s> Stmts<'s> {
                 run(input, &self.typed)
             }
             (Some(Token::Fn), _) => run(input, &self.function),
-            (Some(Token::Assert), _) => {
-                run(input, &self.assert).or_else(|| self.value(input))
-            }
+            (Some(Token::Assert), _) => run(input, &self.assert).or_else(|| self.value(input)),
             _ => self.value(input),
         }
     }
