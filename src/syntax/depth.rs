@@ -165,29 +165,34 @@ struct Fault {
 fn too_deep(tokens: &Tokens) -> Vec<Fault> {
     let mut faults: Vec<Fault> = vec![];
     let mut levels = vec![Level::default()];
-    let (mut start, mut at, mut before) = (0, None, None);
+    let (mut start, mut at) = (0, None);
     for (index, &token) in tokens.kinds.iter().enumerate() {
         if token == Token::Newline && levels.len() == 1 {
             faults.extend(at.take().map(|at| Fault { start, end: index, at }));
             start = index + 1;
             levels[0] = Level::default();
-        } else if step(&mut levels, token, before)
+        } else if step(&mut levels, tokens, index)
             && at.is_none()
             && levels.last().is_some_and(|level| level.depth() > LIMIT)
         {
             at = Some(index);
         }
-        before = Some(token);
     }
     faults.extend(at.map(|at| Fault { start, end: tokens.len(), at }));
     faults
 }
 
 /// Counts a token. Whether the depth may have grown.
-fn step(levels: &mut Vec<Level>, token: Token, before: Option<Token>) -> bool {
+fn step(levels: &mut Vec<Level>, tokens: &Tokens, index: usize) -> bool {
+    let token = tokens.kinds[index];
+    let effect = effect(token);
+    if let Effect::Nothing = effect {
+        return false;
+    }
+    let infix = || index > 0 && OPERAND_ENDS.has(tokens.kinds[index - 1]);
     let Some(top) = levels.last_mut() else { return false };
-    match effect(token) {
-        Effect::Nothing => return false,
+    match effect {
+        Effect::Nothing => {}
         Effect::Opens => {
             let above = top.above + top.holding + top.nots + top.operand + BRACKET;
             levels.push(Level { above, ..Level::default() });
@@ -202,11 +207,7 @@ fn step(levels: &mut Vec<Level>, token: Token, before: Option<Token>) -> bool {
             }
         }
         Effect::Separates => top.separate(),
-        Effect::Joins(_)
-            if token == Token::Minus && !before.is_some_and(|t| OPERAND_ENDS.has(t)) =>
-        {
-            top.operand += 1;
-        }
+        Effect::Joins(_) if token == Token::Minus && !infix() => top.operand += 1,
         Effect::Joins(row) => top.join(row),
         Effect::Holds => {
             top.holding += 1;

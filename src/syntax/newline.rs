@@ -50,9 +50,9 @@ pub fn newlines(text: &str, mut tokens: Tokens) -> Tokens {
     let mut kept = 0_usize;
     for index in 0..tokens.len() {
         let kind = tokens.kinds[index];
-        let before = kept.checked_sub(1).map(|last| tokens.kinds[last]);
+        let before = || kept.checked_sub(1).map(|last| tokens.kinds[last]);
         match kind {
-            Token::Newline if !ends_statement(text, &tokens, index, open.last(), before) => {
+            Token::Newline if !ends_statement(text, &tokens, index, open.last(), before()) => {
                 continue;
             }
             Token::Doc if !open.is_empty() => continue,
@@ -64,12 +64,14 @@ pub fn newlines(text: &str, mut tokens: Tokens) -> Tokens {
             Token::RParen | Token::RBracket | Token::RBrace | Token::HoleClose => {
                 open.pop();
                 // A line end before a closing bracket does not count.
-                kept -= usize::from(before == Some(Token::Newline));
+                kept -= usize::from(before() == Some(Token::Newline));
             }
             _ => {}
         }
-        tokens.kinds[kept] = kind;
-        tokens.spans[kept] = tokens.spans[index];
+        if kept < index {
+            tokens.kinds[kept] = kind;
+            tokens.spans[kept] = tokens.spans[index];
+        }
         kept += 1;
     }
     let tail = tokens.kinds[..kept].iter().rev();

@@ -6,7 +6,7 @@ use chumsky::{
     input::{Checkpoint, Cursor, MapExtra},
     inspector::Inspector,
 };
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxBuildHasher, FxHashMap};
 use unicode_normalization::{UnicodeNormalization, is_nfc};
 
 use super::{Extra, Input, Production, Productions};
@@ -19,6 +19,9 @@ use crate::{
         token::{Token, Tokens},
     },
 };
+
+/// Bytes of text for which a new name is expected.
+const NAMED: usize = 64;
 
 pub(super) struct State<'s> {
     /// Elements of the lists that are being read.
@@ -39,7 +42,7 @@ impl<'s> State<'s> {
             text,
             kinds: &tokens.kinds,
             spans: &tokens.spans,
-            names: FxHashMap::default(),
+            names: FxHashMap::with_capacity_and_hasher(text.len() / NAMED, FxBuildHasher),
             used: Productions::default(),
         }
     }
