@@ -1,5 +1,9 @@
 //! From tokens to the tree, with chumsky: one function for each production of
 //! `grammar/katachi.ebnf`, named like it.
+//!
+//! What begins with a word or bracket of its own is put together from combinators. Where nearly every
+//! token is met (items, statements, operators, calls and single names) the next token decides by
+//! itself, so those productions [read](reader) it by hand, inside the same chumsky input.
 
 mod atom;
 mod expr;
