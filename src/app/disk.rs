@@ -32,7 +32,8 @@ impl Disk {
     pub fn open(file: &str, root: Option<&Path>) -> Result<(Disk, String), String> {
         if file == "-" {
             let root = canonical(root.unwrap_or(Path::new(".")))?;
-            let stdin = limited(io::stdin().lock()).map_err(|e| format!("standard input: {e}"))?;
+            let stdin =
+                limited(io::stdin().lock(), 0).map_err(|e| format!("standard input: {e}"))?;
             return Ok((Disk { root, stdin: Some(stdin) }, STDIN.to_string()));
         }
         let path = Path::new(file);
@@ -81,7 +82,7 @@ impl World for Disk {
         if about.len() > LARGEST_FILE {
             return Err(FileError::TooLarge { size: about.len(), limit: LARGEST_FILE });
         }
-        limited(File::open(&found).map_err(|e| refusal(&e))?)
+        limited(File::open(&found).map_err(|e| refusal(&e))?, about.len() as usize)
     }
 }
 
@@ -94,8 +95,9 @@ fn marked(folder: &Path) -> Option<&Path> {
     folder.ancestors().find(|above| above.join(ROOT_MARK).is_file())
 }
 
-fn limited(from: impl Read) -> Result<Vec<u8>, FileError> {
-    let mut bytes = vec![];
+/// All bytes, of which there are probably `size`.
+fn limited(from: impl Read, size: usize) -> Result<Vec<u8>, FileError> {
+    let mut bytes = Vec::with_capacity(size);
     let read = from.take(LARGEST_FILE + 1).read_to_end(&mut bytes).map_err(|e| refusal(&e))?;
     if read as u64 > LARGEST_FILE {
         return Err(FileError::TooLarge { size: read as u64, limit: LARGEST_FILE });

@@ -141,17 +141,15 @@ impl fmt::Display for Dimension {
 
 /// What one of a unit is in millimetres or degrees, and which dimension it has.
 pub fn unit_factor(unit: UnitName) -> (f64, Dimension) {
-    match unit {
-        UnitName::Um => (0.001, Dimension::LENGTH),
-        UnitName::Mm => (1.0, Dimension::LENGTH),
-        UnitName::Cm => (10.0, Dimension::LENGTH),
-        UnitName::M => (1000.0, Dimension::LENGTH),
-        UnitName::In => (25.4, Dimension::LENGTH),
-        UnitName::Ft => (304.8, Dimension::LENGTH),
-        UnitName::Deg => (1.0, Dimension::ANGLE),
-        UnitName::Rad => (180.0 / std::f64::consts::PI, Dimension::ANGLE),
-        UnitName::Turn => (360.0, Dimension::ANGLE),
+    if let Some(millimetres) = unit.millimetres() {
+        return (millimetres, Dimension::LENGTH);
     }
+    let degrees = match unit {
+        UnitName::Rad => 180.0 / std::f64::consts::PI,
+        UnitName::Turn => 360.0,
+        _ => 1.0,
+    };
+    (degrees, Dimension::ANGLE)
 }
 
 /// A written number in millimetres and degrees, scaled in decimals; `None` when the exponent of its

@@ -38,6 +38,8 @@ pub struct Instance {
     pub unit: Arc<Unit>,
     pub cells: Vec<Cell>,
     pub given: Vec<Given>,
+    /// The seed that the file sets.
+    pub seed: Cell,
     /// Set when a parameter or a top-level assert refuses the instance.
     pub refused: Option<Failure>,
     /// Whether its asserts were checked with geometry.
@@ -47,7 +49,7 @@ pub struct Instance {
 impl Instance {
     pub fn new(unit: Arc<Unit>, given: Vec<Given>) -> Instance {
         let cells = vec![Cell::Todo; unit.globals.len()];
-        Instance { unit, cells, given, refused: None, proved: false }
+        Instance { unit, cells, given, seed: Cell::Todo, refused: None, proved: false }
     }
 
     pub fn given(&self, name: &str) -> Option<&Given> {

@@ -371,10 +371,7 @@ impl Evaluator<'_> {
                     Err(error.help("the kernels are `EXACT`").into())
                 }
             },
-            "seed" => {
-                let value = self.eval_in(instance, setting.value, setting.frame)?;
-                self.typed(value, Some(&Type::Count), at).map(|_| None)
-            }
+            "seed" => self.seed(instance, at).map(|_| None),
             name => {
                 let message = format!("there is no setting `{name}`");
                 let error =

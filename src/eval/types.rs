@@ -162,12 +162,45 @@ impl Type {
     }
 
     fn check_count(&self, number: f64, value: &Value) -> Result<(), Misfit> {
-        /// Counts above this are slips; an exact integer in a float and in 32 bits.
-        const LARGEST: f64 = 4_294_967_295.0;
-        if number >= 0.0 && number.fract() == 0.0 && number <= LARGEST {
+        /// The whole numbers up to here are exact: 2^53.
+        const LARGEST: f64 = 9_007_199_254_740_992.0;
+        let whole = number >= 0.0 && number.fract() == 0.0;
+        if whole && number <= LARGEST {
             return Ok(());
         }
-        Err(Misfit { code: Code::OutOfRange, ..self.misfit(value) })
+        let words = match whole {
+            true => format!("is at most {LARGEST}, got {value}"),
+            false => self.misfit(value).words,
+        };
+        Err(Misfit { code: Code::OutOfRange, words })
+    }
+
+    /// The first length or coordinate in a value of this type that is larger than `reach` mm.
+    pub fn beyond(&self, value: &Value, reach: f64) -> Option<f64> {
+        match (self, value) {
+            (Type::Number(Dimension::LENGTH), Value::Number(number, _)) => {
+                (number.abs() > reach).then_some(*number)
+            }
+            (Type::Point, Value::List(list)) => {
+                let length = Type::Number(Dimension::LENGTH);
+                list.iter().find_map(|item| length.beyond(item, reach))
+            }
+            (Type::List(inner), Value::List(list)) if inner.measures() => {
+                list.iter().find_map(|item| inner.beyond(item, reach))
+            }
+            (Type::Optional(inner), value) => inner.beyond(value, reach),
+            _ => None,
+        }
+    }
+
+    /// Whether a value of this type can hold a length that [`beyond`](Type::beyond) sees.
+    fn measures(&self) -> bool {
+        match self {
+            Type::Number(dimension) => *dimension == Dimension::LENGTH,
+            Type::Point => true,
+            Type::List(inner) | Type::Optional(inner) => inner.measures(),
+            _ => false,
+        }
     }
 
     fn check_items(&self, inner: &Type, graph: &ShapeGraph, list: &[Value]) -> Result<(), Misfit> {

@@ -38,6 +38,7 @@ pub enum Code {
     And(CodeId, CodeId),
     Or(CodeId, CodeId),
     Binary(BinaryOp, CodeId, CodeId),
+    Chain(Box<ChainCode>),
     Range(Box<RangeCode>),
     Call(Box<CallCode>),
     Method(Box<MethodCode>),
@@ -89,6 +90,13 @@ pub struct BinderCode {
     pub slot: u32,
     pub index: Option<u32>,
     pub source: CodeId,
+}
+
+/// Operators that bind alike, from left to right: `a + b - c`, `a and b and c`.
+#[derive(Debug)]
+pub struct ChainCode {
+    pub first: CodeId,
+    pub links: Box<[(BinaryOp, CodeId)]>,
 }
 
 #[derive(Debug)]
@@ -335,7 +343,12 @@ impl Unit {
             (None, Some(Code::Text(_) | Code::Constant(Value::Text(_)))) => Some(ParamKind::Text),
             (
                 None,
-                Some(Code::Constant(Value::Number(..)) | Code::Binary(..) | Code::Negate(_)),
+                Some(
+                    Code::Constant(Value::Number(..))
+                    | Code::Binary(..)
+                    | Code::Chain(_)
+                    | Code::Negate(_),
+                ),
             ) => Some(ParamKind::Number),
             _ => None,
         }

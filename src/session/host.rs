@@ -42,15 +42,15 @@ impl Session<'_> {
     fn parsed(&self, path: &str, bytes: &[u8]) -> Loaded {
         let mut sources = self.sources();
         let next = SourceId(sources.iter().count() as u32);
-        let (text, refused) = match syntax::decode(next, bytes) {
-            Ok(text) => (text, None),
-            Err(diagnostic) => (String::new(), Some(diagnostic)),
+        let (text, refused): (Arc<str>, _) = match syntax::decode(next, bytes) {
+            Ok(text) => (text.into(), None),
+            Err(diagnostic) => ("".into(), Some(diagnostic)),
         };
-        let source = sources.add(path, &*text);
+        let source = sources.add(path, text.clone());
         debug_assert_eq!(source, next);
         let (program, mut diagnostics) = syntax::parse(source, &text);
         diagnostics.extend(refused);
-        Loaded { path: path.into(), text: text.into(), source, program, diagnostics }
+        Loaded { path: path.into(), text, source, program, diagnostics }
     }
 }
 

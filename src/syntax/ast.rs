@@ -2,6 +2,9 @@
 //!
 //! Every node carries the span of the characters it was read from. What the parser could not read
 //! is an [`ExprKind::Error`] or is left out; a diagnostic stands for it.
+//!
+//! A file of ten thousand lines has a hundred thousand expressions, so what is rare or large stands
+//! in a box: an [`Expr`] has 56 bytes.
 
 use std::sync::Arc;
 
@@ -42,14 +45,15 @@ pub struct Item {
 #[derive(Clone, PartialEq, Debug)]
 pub enum ItemKind {
     /// `use "path" as name with { ... }` or `use "path" { a, b as c }`.
-    Use(Use),
+    Use(Box<Use>),
     /// `param name: type = default in domain when condition`.
-    Param(Param),
+    Param(Box<Param>),
     /// `group "title"`: heading for the parameters that follow.
     Group(Text),
     /// `set name = expr`.
     Set {
-        /// `tolerance`, `kernel` or `seed`.
+        /// `tolerance` (the chord error of curves), `kernel` (what makes the solids) or `seed` (what
+        /// functions with a `seed` of their own, such as `noise`, take when none is given).
         name: Name,
         /// The value.
         value: Expr,
@@ -64,7 +68,7 @@ pub enum ItemKind {
         value: Expr,
     },
     /// `test "title" { ... }`.
-    Test(Test),
+    Test(Box<Test>),
     /// A statement, with `pub` before it or not.
     Stmt {
         /// Whether `pub` stands before it (only before a binding or a function).
@@ -112,7 +116,7 @@ pub struct Param {
     /// Its name.
     pub name: Name,
     /// Its declared type.
-    pub ty: Option<Type>,
+    pub ty: Option<Box<Type>>,
     /// The value it has when none is given.
     pub default: Expr,
     /// The range or the list of choices it must lie in.
@@ -175,7 +179,7 @@ pub enum StmtKind {
         /// The name.
         name: Name,
         /// Its declared type.
-        ty: Option<Type>,
+        ty: Option<Box<Type>>,
         /// The value.
         value: Expr,
     },
@@ -200,7 +204,7 @@ pub struct Function {
     /// Its parameters.
     pub params: Vec<FnParam>,
     /// The declared type of its value.
-    pub result: Option<Type>,
+    pub result: Option<Box<Type>>,
     /// Its body: `= expr` or a block.
     pub body: Body,
     /// From `fn` to the end of the body.
@@ -213,7 +217,7 @@ pub struct FnParam {
     /// Its name.
     pub name: Name,
     /// Its declared type.
-    pub ty: Option<Type>,
+    pub ty: Option<Box<Type>>,
     /// Its default; a parameter with a default must be named in calls.
     pub default: Option<Expr>,
 }
@@ -286,7 +290,7 @@ pub enum ExprKind {
         unit: Option<Unit>,
     },
     /// A string.
-    Text(Text),
+    Text(Box<Text>),
     /// `true` or `false`.
     Bool(bool),
     /// A name.
@@ -298,25 +302,11 @@ pub enum ExprKind {
     /// `{ a = 1, ..b }`.
     Record(Vec<Field>),
     /// `do { ... }`.
-    Do(Block),
-    /// `if c { } else { }`; the `else` block of `else if` holds one `if` expression.
-    If {
-        /// The condition.
-        condition: Box<Expr>,
-        /// When it holds.
-        then: Block,
-        /// When it does not.
-        otherwise: Option<Block>,
-    },
+    Do(Box<Block>),
+    /// `if c { } else { }`.
+    If(Box<If>),
     /// `for a, i in list, b in other if c { }`.
-    For {
-        /// What runs over what; later binders run inside earlier ones.
-        binders: Vec<Binder>,
-        /// The elements for which it holds are kept.
-        condition: Option<Box<Expr>>,
-        /// The value of each element.
-        body: Block,
-    },
+    For(Box<For>),
     /// `a => expr`.
     Lambda {
         /// Its parameters.
@@ -334,27 +324,11 @@ pub enum ExprKind {
         operand: Box<Expr>,
     },
     /// `a + b` and its like, `and` and `or` among them.
-    Binary {
-        /// The operator.
-        op: BinaryOp,
-        /// The operator's place.
-        op_span: Span,
-        /// What stands left of it.
-        left: Box<Expr>,
-        /// What stands right of it.
-        right: Box<Expr>,
-    },
+    Binary(Box<Binary>),
+    /// `a + b - c`: two or more operators that bind alike, from left to right.
+    Chain(Box<Chain>),
     /// `a..b step c`.
-    Range {
-        /// The first element.
-        start: Box<Expr>,
-        /// The bound.
-        end: Box<Expr>,
-        /// Whether the bound itself belongs to it (`..`) or not (`..<`).
-        inclusive: bool,
-        /// The step, else 1 in the start's unit.
-        step: Option<Box<Expr>>,
-    },
+    Range(Box<Range>),
     /// `f(a, b = c, ..d)`.
     Call {
         /// What is called; a [`ExprKind::Member`] may be a uniform call `x.f(a)`.
@@ -363,12 +337,7 @@ pub enum ExprKind {
         arguments: Vec<Argument>,
     },
     /// `a.name`.
-    Member {
-        /// What has it.
-        object: Box<Expr>,
-        /// Its name.
-        name: Name,
-    },
+    Member(Box<Member>),
     /// `a[i]`.
     Index {
         /// What is indexed.
@@ -378,6 +347,83 @@ pub enum ExprKind {
     },
     /// What could not be read; a diagnostic has been given.
     Error,
+}
+
+/// `if c { } else { }`.
+#[derive(Clone, PartialEq, Debug)]
+pub struct If {
+    /// The condition.
+    pub condition: Expr,
+    /// When it holds.
+    pub then: Block,
+    /// When it does not; the block of `else if` holds one `if` expression.
+    pub otherwise: Option<Block>,
+}
+
+/// `for a, i in list, b in other if c { }`.
+#[derive(Clone, PartialEq, Debug)]
+pub struct For {
+    /// What runs over what; later binders run inside earlier ones.
+    pub binders: Vec<Binder>,
+    /// The elements for which it holds are kept.
+    pub condition: Option<Expr>,
+    /// The value of each element.
+    pub body: Block,
+}
+
+/// `left op right`.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Binary {
+    /// The operator.
+    pub op: BinaryOp,
+    /// The operator's place.
+    pub op_span: Span,
+    /// What stands left of it.
+    pub left: Expr,
+    /// What stands right of it.
+    pub right: Expr,
+}
+
+/// `first op right op right ...`, flat: a sum of 100,000 terms is no deeper than one of two.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Chain {
+    /// What stands left of all operators.
+    pub first: Expr,
+    /// At least two, whose operators bind alike.
+    pub links: Vec<Link>,
+}
+
+/// One operator of a [`Chain`]: its left operand is all that stands before it.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Link {
+    /// The operator.
+    pub op: BinaryOp,
+    /// The operator's place.
+    pub op_span: Span,
+    /// What stands right of it.
+    pub right: Expr,
+}
+
+/// `start..end step step`.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Range {
+    /// The first element.
+    pub start: Expr,
+    /// The bound.
+    pub end: Expr,
+    /// Whether the bound itself belongs to it (`..`) or not (`..<`).
+    pub inclusive: bool,
+    /// The step, else 1 in the start's unit.
+    pub step: Option<Expr>,
+}
+
+/// `object.name`.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Member {
+    /// What has it.
+    pub object: Expr,
+    /// Its name.
+    pub name: Name,
 }
 
 /// A unit behind a number.
@@ -410,6 +456,27 @@ pub enum UnitName {
     Rad,
     /// Full turn, 360 degrees.
     Turn,
+}
+
+impl UnitName {
+    /// How long one of a unit of length is; `None` for angles.
+    ///
+    /// ```
+    /// use katachi::syntax::ast::UnitName;
+    /// assert_eq!(UnitName::In.millimetres(), Some(25.4));
+    /// assert_eq!(UnitName::Deg.millimetres(), None);
+    /// ```
+    pub const fn millimetres(self) -> Option<f64> {
+        match self {
+            UnitName::Um => Some(0.001),
+            UnitName::Mm => Some(1.0),
+            UnitName::Cm => Some(10.0),
+            UnitName::M => Some(1000.0),
+            UnitName::In => Some(25.4),
+            UnitName::Ft => Some(304.8),
+            UnitName::Deg | UnitName::Rad | UnitName::Turn => None,
+        }
+    }
 }
 
 /// A field of a record.

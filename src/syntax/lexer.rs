@@ -31,7 +31,8 @@ pub struct Lexed {
 /// assert_eq!(lexed.comments.len(), 1);
 /// ```
 pub fn lex(source: SourceId, text: &str) -> Lexed {
-    let out = Lexed { tokens: Tokens::with_capacity(text.len() / 3), ..Lexed::default() };
+    // Room for the densest texts; what is not used is never touched.
+    let out = Lexed { tokens: Tokens::with_capacity(text.len() / 2), ..Lexed::default() };
     let mut lexer = Lexer { source, text, raw: Token::lexer(text), out, strings: vec![] };
     while let Some(token) = lexer.raw.next() {
         lexer.take(token);
@@ -137,8 +138,8 @@ impl<'s> Lexer<'s> {
         let start = self.raw.span().start;
         let parts = number::measure(&self.text[start..]);
         self.raw.bump(start + parts.end - self.raw.span().end);
-        match number::read(self.raw.slice()) {
-            Ok(_) => self.push(Token::Number),
+        match number::check(self.raw.slice(), parts) {
+            Ok(()) => self.push(Token::Number),
             Err(fault) => {
                 self.push(Token::Bad);
                 let diagnostic = self.number_fault(fault, start, parts);

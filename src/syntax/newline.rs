@@ -44,40 +44,40 @@ const CONTINUING_WORDS: TokenSet =
 
 /// Drops the line ends that end no statement, and `///` lines that stand before no item: inside
 /// brackets, where they are plain comments, and at the end of the file.
-pub fn newlines(text: &str, tokens: &Tokens) -> Tokens {
-    let mut kept = Tokens::with_capacity(tokens.len());
+pub fn newlines(text: &str, mut tokens: Tokens) -> Tokens {
     let mut open: Vec<Token> = vec![];
-    for (index, (&kind, &span)) in tokens.kinds.iter().zip(&tokens.spans).enumerate() {
+    // What is kept moves up to the front; what is looked ahead at lies behind it.
+    let mut kept = 0_usize;
+    for index in 0..tokens.len() {
+        let kind = tokens.kinds[index];
+        let before = || kept.checked_sub(1).map(|last| tokens.kinds[last]);
         match kind {
-            Token::Newline => {
-                if ends_statement(text, tokens, index, open.last(), kept.kinds.last()) {
-                    kept.push(kind, span);
-                }
+            Token::Newline if !ends_statement(text, &tokens, index, open.last(), before()) => {
                 continue;
             }
             Token::Doc if !open.is_empty() => continue,
-            _ if TokenSet::OPENERS.has(kind) => open.push(kind),
-            _ if TokenSet::CLOSERS.has(kind) => drop_pair(&mut open, &mut kept),
+            Token::LParen
+            | Token::LambdaParen
+            | Token::LBracket
+            | Token::LBrace
+            | Token::HoleOpen => open.push(kind),
+            Token::RParen | Token::RBracket | Token::RBrace | Token::HoleClose => {
+                open.pop();
+                // A line end before a closing bracket does not count.
+                kept -= usize::from(before() == Some(Token::Newline));
+            }
             _ => {}
         }
-        kept.push(kind, span);
+        if kept < index {
+            tokens.kinds[kept] = kind;
+            tokens.spans[kept] = tokens.spans[index];
+        }
+        kept += 1;
     }
-    drop_tail(&mut kept);
-    kept
-}
-
-/// Closes a bracket; a line end before it does not count.
-fn drop_pair(open: &mut Vec<Token>, kept: &mut Tokens) {
-    open.pop();
-    if kept.kinds.last() == Some(&Token::Newline) {
-        kept.truncate(kept.len() - 1);
-    }
-}
-
-fn drop_tail(kept: &mut Tokens) {
-    while let Some(Token::Newline | Token::Doc) = kept.kinds.last() {
-        kept.truncate(kept.len() - 1);
-    }
+    let tail = tokens.kinds[..kept].iter().rev();
+    kept -= tail.take_while(|kind| matches!(kind, Token::Newline | Token::Doc)).count();
+    tokens.truncate(kept);
+    tokens
 }
 
 fn ends_statement(
@@ -85,9 +85,9 @@ fn ends_statement(
     tokens: &Tokens,
     index: usize,
     innermost: Option<&Token>,
-    before: Option<&Token>,
+    before: Option<Token>,
 ) -> bool {
-    let Some(&before) = before else { return false };
+    let Some(before) = before else { return false };
     if innermost.is_some_and(|open| *open != Token::LBrace) {
         return false;
     }
@@ -134,7 +134,7 @@ mod tests {
 
     /// How many statements the lines are.
     fn statements(text: &str) -> usize {
-        let tokens = newlines(text, &lex(SourceId(0), text).tokens);
+        let tokens = newlines(text, lex(SourceId(0), text).tokens);
         let mut depth = 0;
         let mut ends = 0;
         for kind in &tokens.kinds {
@@ -247,7 +247,7 @@ mod tests {
     #[test]
     fn the_innermost_bracket_decides() {
         let ends = |text: &str| {
-            let tokens = newlines(text, &lex(SourceId(0), text).tokens);
+            let tokens = newlines(text, lex(SourceId(0), text).tokens);
             tokens.kinds.iter().filter(|kind| **kind == Token::Newline).count()
         };
         assert_eq!(ends("f(do {\n a\n b\n})"), 1);

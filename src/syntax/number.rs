@@ -22,6 +22,9 @@ pub const UNITS: &[(&str, UnitName)] = &[
 /// assert_eq!(katachi::syntax::number::scaled(1.5, 25.4), 38.1);
 /// ```
 pub fn scaled(value: f64, factor: f64) -> f64 {
+    if factor == 1.0 {
+        return value;
+    }
     let exact = |number: f64| {
         let text = format!("{number:e}");
         let (digits, exponent) = text.split_once('e')?;
@@ -109,6 +112,19 @@ fn word_length(text: &str) -> usize {
     text.find(|c| !is_letter(c)).unwrap_or(text.len())
 }
 
+/// What is wrong with a number that [`measure`] has cut, if anything: what [`read`] would say, but
+/// without taking the trouble to read digits that are in range by their number alone.
+pub fn check(text: &str, parts: NumberParts) -> Result<(), NumberFault> {
+    /// So many digits without an exponent are less than 1e300.
+    const SAFE: usize = 300;
+    let digits = &text.as_bytes()[..parts.digits];
+    let plain = digits.len() <= SAFE && !digits.iter().any(|byte| matches!(byte, b'e' | b'E'));
+    if !plain {
+        return read(&text[..parts.end]).map(|_| ());
+    }
+    unit(text, parts).map(|_| ())
+}
+
 /// The value and unit of a number that [`measure`] has cut.
 pub fn read(text: &str) -> Result<(f64, Option<Unit>), NumberFault> {
     let parts = measure(text);
@@ -116,14 +132,18 @@ pub fn read(text: &str) -> Result<(f64, Option<Unit>), NumberFault> {
     if !value.is_finite() {
         return Err(NumberFault::TooLarge);
     }
+    Ok((value, unit(text, parts)?))
+}
+
+fn unit(text: &str, parts: NumberParts) -> Result<Option<Unit>, NumberFault> {
     let word = &text[parts.digits..parts.unit];
     if word.is_empty() {
-        return Ok((value, None));
+        return Ok(None);
     }
     let found = UNITS.iter().find(|(name, _)| *name == word);
     let (_, name) = *found.ok_or(NumberFault::UnknownUnit)?;
     let exponent = exponent(&text[parts.unit..parts.end])?;
-    Ok((value, Some(Unit { name, exponent })))
+    Ok(Some(Unit { name, exponent }))
 }
 
 fn exponent(text: &str) -> Result<i8, NumberFault> {

@@ -63,7 +63,7 @@ fn parse_and_resolve_10000_lines(bencher: divan::Bencher) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let file = folder.path().join("long.kata");
     write_long_model(&file);
-    bencher.bench_local(|| katachi(&["check", &file.to_string_lossy()]));
+    bencher.bench_local(|| katachi(&["params", &file.to_string_lossy()]));
 }
 
 /// Ten thousand lines of ordinary bindings, functions and shapes that lean on earlier lines.

@@ -4,7 +4,11 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
-use crate::{app::render::Style, session::Tolerance};
+use crate::{
+    app::render::Style,
+    session::Tolerance,
+    syntax::{ast::Unit, number},
+};
 
 /// A small language for solid modelling.
 #[derive(Debug, Parser)]
@@ -146,18 +150,21 @@ pub struct New {
     pub name: PathBuf,
 }
 
-/// Millimetres in each unit of length.
-const UNITS: [(&str, f64); 6] =
-    [("um", 1e-3), ("mm", 1.0), ("cm", 10.0), ("m", 1e3), ("in", 25.4), ("ft", 304.8)];
-
-/// A length such as `0.02mm` or `0.02`, greater than zero.
+/// A length as the language writes it, such as `0.02mm`, or a bare number of millimetres; greater than
+/// zero.
 fn tolerance(text: &str) -> Result<Tolerance, String> {
-    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
-    let unit = if digits.len() == text.len() { "mm" } else { &text[digits.len()..] };
-    let factor = UNITS.iter().find(|(name, _)| *name == unit).map(|(_, factor)| factor);
-    let factor = factor.ok_or("a length is needed, such as 0.02mm")?;
-    let number: f64 = digits.parse().map_err(|_| "a length is needed, such as 0.02mm")?;
-    Tolerance::new(number * factor).ok_or_else(|| "a length greater than zero is needed".into())
+    let needed = || "a length is needed, such as 0.02mm".to_string();
+    let whole =
+        text.starts_with(|c: char| c.is_ascii_digit()) && number::measure(text).end == text.len();
+    let read = whole.then(|| number::read(text)).and_then(Result::ok);
+    let millimetres = match read.ok_or_else(needed)? {
+        (value, None) => value,
+        (value, Some(Unit { name, exponent: 1 })) => {
+            number::scaled(value, name.millimetres().ok_or_else(needed)?)
+        }
+        _ => return Err(needed()),
+    };
+    Tolerance::new(millimetres).ok_or_else(|| "a length greater than zero is needed".into())
 }
 
 #[cfg(test)]
@@ -177,7 +184,10 @@ mod tests {
         assert_eq!(mm("0.02mm"), Ok(0.02));
         assert_eq!(mm("20um"), Ok(0.02));
         assert_eq!(mm("0.5"), Ok(0.5));
-        for bad in ["0mm", "-1mm", "nan", "inf", "1deg", "mm", "", "1e999"] {
+        assert_eq!(mm("0.001in"), Ok(0.0254));
+        for bad in
+            ["0mm", "-1mm", "1mm^2", "1 mm", "0.1mmm", "nan", "inf", "1deg", "mm", "", "1e999"]
+        {
             assert!(mm(bad).is_err(), "{bad}");
         }
     }

@@ -20,7 +20,7 @@ pub fn run(arguments: &Build, style: Style) -> io::Result<Exit> {
         Err(words) => return fail(style, Exit::Usage, words),
     };
     let session = desk.session();
-    let (mut model, mut diagnostics) = session.compile(&desk.entry, &desk.given);
+    let (mut model, mut diagnostics) = desk.compile(&session);
     let unknown = model.refuse_unknown(&arguments.part);
     if !unknown.is_empty() {
         diagnostics.extend(unknown);

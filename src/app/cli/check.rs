@@ -12,7 +12,7 @@ pub fn run(arguments: &Check, style: Style) -> io::Result<Exit> {
         Err(words) => return fail(style, Exit::Usage, words),
     };
     let session = desk.session();
-    let (mut model, mut diagnostics) = session.compile(&desk.entry, &desk.given);
+    let (mut model, mut diagnostics) = desk.compile(&session);
     diagnostics.extend(model.check(&[]));
     desk.report(&session, &diagnostics)
 }

@@ -2,6 +2,7 @@
 
 use std::{
     fs, io,
+    mem::ManuallyDrop,
     path::{Path, PathBuf},
 };
 
@@ -17,7 +18,7 @@ use crate::{
         write::write_whole,
     },
     base::Diagnostic,
-    session::{Given, Session, Tolerance},
+    session::{self, Given, Session, Tolerance},
 };
 
 /// Files, parameters and watch of one command.
@@ -59,9 +60,19 @@ impl Desk {
         })
     }
 
-    /// A session over these files.
-    pub fn session(&self) -> Session<'_> {
-        Session::new(&self.disk, &self.watch, self.tolerance)
+    /// A session over these files. It is never dropped: the process ends with its command, and taking
+    /// trees and solids apart piece by piece before that would take longer than reading them.
+    pub fn session(&self) -> ManuallyDrop<Session<'_>> {
+        ManuallyDrop::new(Session::new(&self.disk, &self.watch, self.tolerance))
+    }
+
+    /// The model with the parameters given. It is never dropped either.
+    pub fn compile<'s>(
+        &self,
+        session: &'s Session<'_>,
+    ) -> (ManuallyDrop<session::Model<'s>>, Vec<Diagnostic>) {
+        let (model, diagnostics) = session.compile(&self.entry, &self.given);
+        (ManuallyDrop::new(model), diagnostics)
     }
 
     /// Reports what was found, each thing once, writes the timings if asked to, and says how the command ends.

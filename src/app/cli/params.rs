@@ -17,7 +17,7 @@ pub fn run(arguments: &Params, style: Style) -> io::Result<Exit> {
         Err(words) => return fail(style, Exit::Usage, words),
     };
     let session = desk.session();
-    let (mut model, mut diagnostics) = session.compile(&desk.entry, &desk.given);
+    let (mut model, mut diagnostics) = desk.compile(&session);
     let (params, more) = model.params();
     diagnostics.extend(more);
     let mut out = io::stdout().lock();

@@ -16,7 +16,7 @@ pub fn run(arguments: &Test, style: Style) -> io::Result<Exit> {
         Err(words) => return fail(style, Exit::Usage, words),
     };
     let session = desk.session();
-    let (mut model, mut diagnostics) = session.compile(&desk.entry, &desk.given);
+    let (mut model, mut diagnostics) = desk.compile(&session);
     let (mut passed, mut failed) = (0, 0);
     let mut out = io::stdout().lock();
     for (index, test) in model.tests().into_iter().enumerate() {

@@ -17,7 +17,7 @@ pub enum Style {
     /// With the source lines and underlines.
     #[default]
     Human,
-    /// One line each: `path:line:column: error[code]: message`.
+    /// One line each: `path:line:column: error[code]: message; help: ...`.
     Short,
     /// One JSON object a line.
     Json,
@@ -91,7 +91,7 @@ mod tests {
     fn a_short_line_names_the_place_and_the_code() {
         assert_eq!(
             text(Style::Short),
-            "lid.kata:2:8: error[unknown-argument]: no parameter `radius`\n"
+            "lid.kata:2:8: error[unknown-argument]: no parameter `radius`; help: did you mean `r`?\n"
         );
     }
 

@@ -215,7 +215,7 @@ fn flatten(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
 
 /// The whole numbers 0..<n.
 fn range(_: &mut Evaluator, args: &Args) -> Outcome<Value> {
-    let n = f64::from(args.count(0, 0)?);
+    let n = args.number(0)?;
     let range = crate::eval::value::Range::new(0.0, n, None, 1.0, false);
     Ok(Value::Range(std::sync::Arc::new(range)))
 }

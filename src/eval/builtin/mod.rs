@@ -26,10 +26,11 @@ use super::{
     interpret::Frame,
     types::shown,
     unit::Parameter,
-    value::{Symbol, Value},
+    value::{Symbol, Value, number_text},
 };
 use crate::{
     base::{Code, Span},
+    geom::overlay::REACH,
     shape::ShapeId,
 };
 
@@ -108,6 +109,22 @@ impl Args<'_> {
         self.quantity(i).map(|(value, _)| value)
     }
 
+    /// Stops where a length or a coordinate is larger than geometry can work with.
+    pub fn within_reach(&self) -> Outcome<()> {
+        for (i, param) in self.params.iter().enumerate() {
+            let far = param.ty.as_ref().and_then(|ty| ty.beyond(self.value(i), REACH));
+            if let Some(found) = far {
+                let message = format!(
+                    "`{}` holds {}mm; lengths and coordinates lie between -{REACH:e}mm and {REACH:e}mm",
+                    self.name(i),
+                    number_text(found)
+                );
+                return self.fail(i, Code::OutOfRange, message);
+            }
+        }
+        Ok(())
+    }
+
     /// A number above 0.
     pub fn positive(&self, i: usize) -> Outcome<f64> {
         match self.number(i)? {
@@ -130,7 +147,7 @@ impl Args<'_> {
         self.fail(i, Code::Degenerate, message)
     }
 
-    /// A whole number of at least `least`.
+    /// A whole number of at least `least`; the largest of 32 bits for all above it.
     pub fn count(&self, i: usize, least: u32) -> Outcome<u32> {
         let value = self.number(i)?;
         if value < f64::from(least) {
@@ -147,13 +164,16 @@ impl Args<'_> {
         if !self.given(i) {
             return Ok(None);
         }
-        match self.count(i, 3)? {
-            n if n <= MOST => Ok(Some(n)),
-            n => {
-                let message = format!("`{}` is at most {MOST}, got {n}", self.name(i));
-                self.fail(i, Code::Limit, message)
-            }
+        let sides = self.count(i, 3)?;
+        if sides > MOST {
+            let message = format!(
+                "`{}` is at most {MOST}, got {}",
+                self.name(i),
+                number_text(self.number(i)?)
+            );
+            return self.fail(i, Code::Limit, message);
         }
+        Ok(Some(sides))
     }
 
     pub fn text(&self, i: usize) -> Outcome<&str> {

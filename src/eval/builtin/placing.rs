@@ -11,7 +11,7 @@ use crate::{
         nearest::did_you_mean,
         value::{Symbol, Value},
     },
-    geom::{Placement, mesh::Color, trig},
+    geom::{Placement, mesh::Color, overlay::REACH, trig},
     shape::{Node, ShapeId},
 };
 
@@ -50,12 +50,12 @@ fn placed(
     if placement.is_identity() {
         return Ok(child);
     }
-    if !(placement.linear().is_finite() && placement.offset().is_finite()) {
-        return fail(
-            Code::Degenerate,
-            args.call,
-            "the shape is moved or scaled beyond all numbers",
-        );
+    let map = [placement.linear().x_axis, placement.linear().y_axis, placement.linear().z_axis];
+    let fits = |column: DVec3| column.abs().max_element() <= REACH && column.is_finite();
+    if !(map.into_iter().all(fits) && fits(placement.offset())) {
+        let words =
+            format!("the shape is moved or scaled too far: its map holds numbers beyond {REACH:e}");
+        return fail(Code::OutOfRange, args.call, words);
     }
     Ok(evaluator.add_node(Node::Transform { placement, child }, args.call))
 }

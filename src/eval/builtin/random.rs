@@ -2,8 +2,15 @@
 
 use super::{Args, Native, coordinates};
 use crate::{
-    base::Code,
-    eval::{evaluator::Evaluator, failure::Outcome, value::Value},
+    base::{Code, Span},
+    eval::{
+        evaluator::Evaluator,
+        failure::{Outcome, fail},
+        instance::{Cell, InstanceId},
+        types::Type,
+        unit::Unit,
+        value::Value,
+    },
 };
 
 pub const TABLE: &[(&str, Native)] = &[("random.rand", rand), ("random.noise", noise)];
@@ -30,8 +37,12 @@ fn rand(_: &mut Evaluator, args: &Args) -> Outcome<Value> {
 
 /// Gradient noise (Perlin 2002): 0 at whole coordinates, about -1..1 between, smooth to the second
 /// derivative.
-fn noise(_: &mut Evaluator, args: &Args) -> Outcome<Value> {
-    let seed = key(args.number(1)?);
+fn noise(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
+    let seed = match args.given(1) {
+        true => args.number(1)?,
+        false => evaluator.seed(args.caller.instance, args.call)?,
+    };
+    let seed = key(seed);
     let p = match args.value(0) {
         Value::Number(x, _) => [*x, 0.0, 0.0],
         list => match coordinates(list) {
@@ -51,6 +62,34 @@ fn noise(_: &mut Evaluator, args: &Args) -> Outcome<Value> {
         sum += weight * gradient(hash, inside[0] - bit(0), inside[1] - bit(1), inside[2] - bit(2));
     }
     Ok(Value::bare(sum))
+}
+
+impl Evaluator<'_> {
+    /// What `set seed = n` in the file of an instance says, else 0; evaluated once.
+    pub(in crate::eval) fn seed(&mut self, id: InstanceId, at: Span) -> Outcome<f64> {
+        let Some(instance) = self.instances.get_mut(id.0 as usize) else { return Ok(0.0) };
+        if let Cell::Todo = instance.seed {
+            instance.seed = Cell::Busy;
+            let unit = instance.unit.clone();
+            let found = self.evaluated_seed(id, &unit);
+            self.instances[id.0 as usize].seed = match found {
+                Ok(value) => Cell::Done(value),
+                Err(failure) => Cell::Failed(failure),
+            };
+        }
+        match &self.instances[id.0 as usize].seed {
+            Cell::Done(Value::Number(seed, _)) => Ok(*seed),
+            Cell::Failed(failure) => Err(failure.clone()),
+            _ => fail(Code::Cycle, at, "the seed of this file needs itself"),
+        }
+    }
+
+    fn evaluated_seed(&mut self, id: InstanceId, unit: &Unit) -> Outcome<Value> {
+        let setting = unit.settings.iter().rfind(|setting| &*setting.name.text == "seed");
+        let Some(setting) = setting else { return Ok(Value::bare(0.0)) };
+        let value = self.eval_in(id, setting.value, setting.frame)?;
+        self.typed(value, Some(&Type::Count), unit.span(setting.value))
+    }
 }
 
 /// The dot product with one of the twelve directions to the middle of a cube's edges.

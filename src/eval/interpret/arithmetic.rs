@@ -14,6 +14,9 @@ use crate::{
     syntax::ast::BinaryOp,
 };
 
+/// Characters that are copied for one step.
+const BYTES_A_STEP: u64 = 256;
+
 /// The places of an operation and its operands.
 #[derive(Clone, Copy)]
 pub struct Operands {
@@ -214,6 +217,7 @@ impl Evaluator<'_> {
         match (&left, &right) {
             (Value::Text(a), Value::Text(b)) => {
                 self.room((a.len() + b.len()) / meter::BYTES_A_VALUE, at.whole)?;
+                self.tick((a.len() + b.len()) as u64 / BYTES_A_STEP, at.whole)?;
                 Ok(Value::text([&***a, &***b].concat()))
             }
             (a, b) if a.count().is_some() && b.count().is_some() => {

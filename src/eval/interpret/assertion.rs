@@ -56,6 +56,9 @@ fn gather_operands(unit: &Unit, id: CodeId, found: &mut Vec<CodeId>) {
             gather_operands(unit, *a, found);
             gather_operands(unit, *b, found);
         }
+        Code::Chain(chain) => {
+            chain.operands().for_each(|operand| gather_operands(unit, operand, found));
+        }
         Code::Not(operand) => gather_operands(unit, *operand, found),
         Code::Binary(_, a, b) => [a, b].into_iter().for_each(|id| push_operand(unit, *id, found)),
         Code::Call(call) => gather_arguments(unit, &call.arguments, found),

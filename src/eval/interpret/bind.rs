@@ -72,10 +72,40 @@ impl Evaluator<'_> {
                 }
             }
         }
-        match best {
-            Some((number, mismatch)) => Err(self.explain(function, number, mismatch, call)),
+        let (spread, help) = self.unspread(function, call).unzip();
+        match spread.or(best) {
+            Some((number, mismatch)) => {
+                let failure = self.explain(function, number, mismatch, call);
+                Err(failure.map(|error| match help {
+                    Some(help) => error.help(help),
+                    None => error,
+                }))
+            }
             None => Err(Failure::TOLD),
         }
+    }
+
+    /// `box([1, 2, 3])`: where the elements of the only argument would fit one by one, the signature
+    /// that takes them so, why it does not take the list, and how to write it.
+    fn unspread(&self, function: &Function, call: &Call) -> Option<((usize, Mismatch), String)> {
+        /// Longer lists are not meant as arguments.
+        const MOST: usize = 8;
+        let [(Value::List(list), at)] = &call.positional[..] else { return None };
+        if list.len() > MOST {
+            return None;
+        }
+        let spread = Call {
+            positional: list.iter().map(|value| (value.clone(), *at)).collect(),
+            named: call.named.clone(),
+            ..*call
+        };
+        let signatures = function.signatures();
+        let number = signatures.iter().position(|s| self.fit(&s.code, &spread).is_ok())?;
+        let mismatch = self.fit(&signatures[number].code, call).err()?;
+        let values: Vec<String> = list.iter().map(|value| value.literal().to_string()).collect();
+        let name = function.name().unwrap_or("f");
+        let help = format!("without the brackets: `{name}({})`", values.join(", "));
+        Some(((number, mismatch), help))
     }
 
     fn fit(&self, code: &FunctionCode, call: &Call) -> Result<Bound, Mismatch> {

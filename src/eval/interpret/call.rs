@@ -295,7 +295,9 @@ impl Evaluator<'_> {
         self.tick(1, call)?;
         self.room(0, call)?;
         let params = &code.params;
-        native(self, &Args { values, spans, params, call, caller })
+        let args = Args { values, spans, params, call, caller };
+        args.within_reach()?;
+        native(self, &args)
     }
 
     /// Evaluates the defaults of parameters that got nothing, from left to right.

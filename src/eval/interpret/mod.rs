@@ -6,6 +6,7 @@ pub mod arithmetic;
 mod assertion;
 mod bind;
 mod call;
+mod chain;
 pub mod compare;
 mod control;
 mod global;
@@ -63,6 +64,7 @@ impl Evaluator<'_> {
                 let spans = arithmetic::Operands::new(unit, id, *left, *right);
                 self.binary(*op, a, b, spans)
             }
+            Code::Chain(chain) => self.eval_chain(frame, chain),
             Code::Call(call) => self.eval_call(frame, id, call),
             Code::Method(call) => self.eval_method(frame, id, call),
             Code::If { condition, then, otherwise } => match self.truth(frame, *condition)? {

@@ -7,8 +7,8 @@ use crate::{
         dimension::{literal, unit_factor, unit_text},
         stack::deep,
         unit::{
-            ArgumentCode, BinderCode, CallCode, Code, CodeId, ForCode, MethodCode, RangeCode,
-            RecordPart, TextPart,
+            ArgumentCode, BinderCode, CallCode, ChainCode, Code, CodeId, ForCode, MethodCode,
+            RangeCode, RecordPart, TextPart,
         },
         value::{Value, number_text},
     },
@@ -34,12 +34,8 @@ impl Resolver<'_> {
             }
             ExprKind::Record(fields) => self.record(fields, span),
             ExprKind::Do(block) => self.block(block, Ending::Value),
-            ExprKind::If { condition, then, otherwise } => {
-                self.decision(condition, then, otherwise.as_ref(), Ending::Value, span)
-            }
-            ExprKind::For { binders, condition, body } => {
-                self.repeat(binders, condition.as_deref(), body, span)
-            }
+            ExprKind::If(decision) => self.decision(decision, Ending::Value, span),
+            ExprKind::For(repeat) => self.repeat(repeat, span),
             ExprKind::Lambda { params, body } => {
                 let index = self.lambda(params, body);
                 self.add(Code::Closure(index), span)
@@ -52,14 +48,13 @@ impl Resolver<'_> {
                 };
                 self.add(code, span)
             }
-            ExprKind::Binary { op, left, right, .. } => self.binary(*op, left, right, span),
-            ExprKind::Range { start, end, inclusive, step } => {
-                self.range(start, end, *inclusive, step.as_deref(), span)
-            }
+            ExprKind::Binary(binary) => self.binary(binary, span),
+            ExprKind::Chain(chain) => self.chain(chain),
+            ExprKind::Range(range) => self.range(range, span),
             ExprKind::Call { callee, arguments } => self.call(callee, arguments, span),
-            ExprKind::Member { object, name } => {
-                let object = self.expression(object);
-                self.add(Code::Member(object, Box::new(name.clone())), span)
+            ExprKind::Member(member) => {
+                let object = self.expression(&member.object);
+                self.add(Code::Member(object, Box::new(member.name.clone())), span)
             }
             ExprKind::Index { object, index } => {
                 let (object, index) = (self.expression(object), self.expression(index));
@@ -117,13 +112,8 @@ impl Resolver<'_> {
         self.add(Code::Record(parts.into()), span)
     }
 
-    fn repeat(
-        &mut self,
-        binders: &[ast::Binder],
-        condition: Option<&Expr>,
-        body: &ast::Block,
-        span: Span,
-    ) -> CodeId {
+    fn repeat(&mut self, repeat: &ast::For, span: Span) -> CodeId {
+        let binders = &repeat.binders;
         for _ in binders {
             self.scope().open();
         }
@@ -138,8 +128,8 @@ impl Resolver<'_> {
                 BinderCode { slot, index, source }
             })
             .collect();
-        let condition = condition.map(|condition| self.expression(condition));
-        let body = self.block(body, Ending::Element);
+        let condition = repeat.condition.as_ref().map(|condition| self.expression(condition));
+        let body = self.block(&repeat.body, Ending::Element);
         for _ in &binders {
             self.scope().close();
         }
@@ -147,17 +137,32 @@ impl Resolver<'_> {
         self.add(Code::For(Box::new(code)), span)
     }
 
-    fn binary(&mut self, op: BinaryOp, left: &Expr, right: &Expr, span: Span) -> CodeId {
-        if op == BinaryOp::Divide {
+    fn binary(&mut self, binary: &ast::Binary, span: Span) -> CodeId {
+        let ast::Binary { op, left, right, .. } = binary;
+        if *op == BinaryOp::Divide {
             self.note_fraction(left, right, span);
         }
         let (left, right) = (self.expression(left), self.expression(right));
         let code = match op {
             BinaryOp::And => Code::And(left, right),
             BinaryOp::Or => Code::Or(left, right),
-            op => Code::Binary(op, left, right),
+            op => Code::Binary(*op, left, right),
         };
         self.add(code, span)
+    }
+
+    fn chain(&mut self, chain: &ast::Chain) -> CodeId {
+        let first = &chain.links[0];
+        if first.op == BinaryOp::Divide {
+            let span = chain.first.span.to(first.right.span);
+            self.note_fraction(&chain.first, &first.right, span);
+        }
+        let start = self.expression(&chain.first);
+        let links = chain.links.iter().map(|link| (link.op, self.expression(&link.right)));
+        let links: Box<[(BinaryOp, CodeId)]> = links.collect();
+        let last = chain.links.last().map_or(chain.first.span, |link| link.right.span);
+        let code = Code::Chain(Box::new(ChainCode { first: start, links }));
+        self.add(code, chain.first.span.to(last))
     }
 
     /// Remembers `1/4in`, which is 1/length, with the `0.25in` that was probably meant.
@@ -170,22 +175,18 @@ impl Resolver<'_> {
         }
     }
 
-    fn range(
-        &mut self,
-        start: &Expr,
-        end: &Expr,
-        inclusive: bool,
-        step: Option<&Expr>,
-        span: Span,
-    ) -> CodeId {
+    fn range(&mut self, range: &ast::Range, span: Span) -> CodeId {
+        let ast::Range { start, end, inclusive, step } = range;
         let unit = written_unit(start).or_else(|| written_unit(end)).unwrap_or(1.0);
         let (start, end) = (self.expression(start), self.expression(end));
-        let step = step.map(|step| self.expression(step));
-        self.add(Code::Range(Box::new(RangeCode { start, end, inclusive, step, unit })), span)
+        let step = step.as_ref().map(|step| self.expression(step));
+        let code = RangeCode { start, end, inclusive: *inclusive, step, unit };
+        self.add(Code::Range(Box::new(code)), span)
     }
 
     fn call(&mut self, callee: &Expr, arguments: &[ast::Argument], span: Span) -> CodeId {
-        if let ExprKind::Member { object, name } = &callee.kind {
+        if let ExprKind::Member(member) = &callee.kind {
+            let ast::Member { object, name } = &**member;
             let object = self.expression(object);
             let function = self.find(&name.text).map(|code| self.add(code, name.span));
             let arguments = self.arguments(arguments);

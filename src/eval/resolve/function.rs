@@ -38,7 +38,7 @@ impl Resolver<'_> {
             (None, ast::Body::Expr(expr)) => Body::Code(self.expression(expr)),
             (None, ast::Body::Block(block)) => Body::Code(self.block(block, Ending::Value)),
         };
-        let result = self.ty(function.result.as_ref());
+        let result = self.ty(function.result.as_deref());
         self.finish(Some(function.name.text.clone()), params, body, result)
     }
 
@@ -61,7 +61,7 @@ impl Resolver<'_> {
         params
             .iter()
             .map(|param| {
-                let ty = self.ty(param.ty.as_ref());
+                let ty = self.ty(param.ty.as_deref());
                 let default = param.default.as_ref().map(|default| self.expression(default));
                 self.bind(&param.name);
                 Parameter { name: param.name.text.clone(), ty, default }
@@ -147,39 +147,30 @@ impl Resolver<'_> {
 
     fn ending(&mut self, expr: &ast::Expr, ending: Ending) -> CodeId {
         match (&expr.kind, ending) {
-            (ExprKind::If { condition, then, otherwise }, Ending::Element) => {
-                self.decision(condition, then, otherwise.as_ref(), ending, expr.span)
-            }
+            (ExprKind::If(decision), Ending::Element) => self.decision(decision, ending, expr.span),
             _ => self.expression(expr),
         }
     }
 
     /// `if`; without `else` only where an element may be dropped.
-    pub fn decision(
-        &mut self,
-        condition: &ast::Expr,
-        then: &ast::Block,
-        otherwise: Option<&ast::Block>,
-        ending: Ending,
-        span: Span,
-    ) -> CodeId {
-        if otherwise.is_none() && ending != Ending::Element {
+    pub fn decision(&mut self, decision: &ast::If, ending: Ending, span: Span) -> CodeId {
+        if decision.otherwise.is_none() && ending != Ending::Element {
             let message = "this `if` has no `else`, so it has no value when its condition is false";
             let error = Diagnostic::error(base::Code::Syntax, message).label(span, "").help(
                 "add `else { ... }`; only as the last line of a `for` body may it be left out",
             );
             return self.broken(error, span);
         }
-        let condition = self.expression(condition);
-        let then = self.block(then, ending);
-        let otherwise = otherwise.map(|block| self.block(block, ending));
+        let condition = self.expression(&decision.condition);
+        let then = self.block(&decision.then, ending);
+        let otherwise = decision.otherwise.as_ref().map(|block| self.block(block, ending));
         self.add(Code::If { condition, then, otherwise }, span)
     }
 
     fn step(&mut self, stmt: &ast::Stmt) -> Step {
         match &stmt.kind {
             StmtKind::Bind { name, ty, value } => {
-                let ty = self.ty(ty.as_ref());
+                let ty = self.ty(ty.as_deref());
                 let value = self.expression(value);
                 Step::Bind { slot: self.bind(name), value, ty }
             }

@@ -44,6 +44,7 @@ const PENDING: CodeId = CodeId(u32::MAX);
 
 impl Resolver<'_> {
     pub fn program(&mut self, program: &ast::Program) {
+        self.unit.names.reserve(program.items.len());
         for item in &program.items {
             self.declare(item);
         }
@@ -196,7 +197,7 @@ impl Resolver<'_> {
 
     fn top_level(&mut self, stmt: &ast::Stmt, globals: &mut std::ops::Range<usize>) {
         match &stmt.kind {
-            StmtKind::Bind { ty, value, .. } => self.global(value, ty.as_ref(), globals),
+            StmtKind::Bind { ty, value, .. } => self.global(value, ty.as_deref(), globals),
             StmtKind::Expr(value) => self.global(value, None, globals),
             StmtKind::Fn(function) => {
                 let index = self.function(function, false);
@@ -261,7 +262,7 @@ impl Resolver<'_> {
         group: Option<Arc<str>>,
         globals: &mut std::ops::Range<usize>,
     ) {
-        let ty = self.ty(param.ty.as_ref());
+        let ty = self.ty(param.ty.as_deref());
         let (value, frame) = self.framed(|this| this.expression(&param.default));
         let number = self.set_global(globals, value, frame);
         self.unit.globals[number].ty = ty;

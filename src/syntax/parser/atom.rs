@@ -6,8 +6,8 @@ use chumsky::prelude::*;
 
 use super::{Boxed, Extra, Fault, Input, Parse, Production, state::here};
 use crate::syntax::{
-    ast::{Expr, ExprKind, Name, Piece, Text},
-    number, text,
+    ast::{Expr, Name, Piece, Text},
+    text,
     token::{Token, TokenSet},
 };
 
@@ -37,18 +37,12 @@ pub(super) fn marked<'s, T: 's>(production: Production, parser: impl Parse<'s, T
         .boxed()
 }
 
-fn word<'s>(set: TokenSet) -> impl Parse<'s, Name> {
-    take(set).map_with(|_, extra| {
-        let at = extra.span().start;
-        let state = extra.state();
-        state.mark(Production::Name);
-        Name { text: state.word(at), span: state.span(at, at + 1) }
-    })
-}
-
 /// NAME
 pub(super) fn name<'s>() -> impl Parse<'s, Name> {
-    word(TokenSet::NAMES)
+    take(TokenSet::NAMES).map_with(|_, extra| {
+        let at = extra.span().start;
+        extra.state().name(at)
+    })
 }
 
 /// A NAME before one of the given tokens, which are not read: other names are not looked up, since
@@ -60,30 +54,7 @@ pub(super) fn name_before<'s>(next: TokenSet) -> impl Parse<'s, Name> {
         if !named || !input.peek().is_some_and(|token| next.has(token)) {
             return Err(Fault { at, expected: TokenSet::NAMES });
         }
-        let state = input.state();
-        state.mark(Production::Name);
-        Ok(Name { text: state.word(at), span: state.span(at, at + 1) })
-    })
-}
-
-/// What may follow a `.`: any word.
-pub(super) fn member_name<'s>() -> impl Parse<'s, Name> {
-    word(TokenSet::NAMES.or(TokenSet::RESERVED))
-}
-
-/// NUMBER
-pub(super) fn number<'s>() -> impl Parse<'s, Expr> {
-    token(Token::Number).map_with(|_, extra| {
-        let at = extra.span().start;
-        let state = extra.state();
-        state.mark(Production::Number);
-        let span = state.span(at, at + 1);
-        // The lexer has refused what cannot be read.
-        let kind = match number::read(state.slice(at)) {
-            Ok((value, unit)) => ExprKind::Number { value, unit },
-            Err(_) => ExprKind::Error,
-        };
-        Expr { kind, span }
+        Ok(input.state().name(at))
     })
 }
 
@@ -97,6 +68,10 @@ pub(super) fn string<'s>(expr: impl Parse<'s, Expr>) -> Boxed<'s, Text> {
         .ignore_then(expr.map(|e| Piece::Expr(Box::new(e))))
         .then_ignore(token(Token::HoleClose));
     let pieces = literal.or(hole).repeated().collect();
+    let pieces = pieces.map(|mut pieces: Vec<Piece>| {
+        pieces.shrink_to_fit();
+        pieces
+    });
     let string = token(Token::StringStart)
         .ignore_then(pieces)
         .then_ignore(token(Token::StringEnd))

@@ -1,15 +1,15 @@
 //! Expressions, and the knot that ties them to blocks.
 
-use std::sync::Arc;
+use std::{rc::Rc, sync::Arc};
 
 use chumsky::prelude::*;
 
 use super::{
     Boxed, Parse, Production,
-    atom::{marked, name, name_before, token},
+    atom::{name, token},
     operator::or,
-    primary::{postfix, primary},
-    state::here,
+    primary::Forms,
+    reader::{Reader, place, reading, run},
     stmt::block,
 };
 use crate::syntax::{
@@ -17,30 +17,36 @@ use crate::syntax::{
     token::{Token, TokenSet},
 };
 
-/// expr = NAME "=>" expr | "(" [ NAME { "," NAME } ] ")" "=>" expr | or
+/// Any expression.
 pub(super) fn expr<'s>() -> impl Parse<'s, Expr> {
     recursive(|expr| {
         let block = block(expr.clone());
-        let primary = primary(expr.clone(), block);
-        let operation = or(postfix(primary, expr.clone()));
-        marked(Production::Expr, choice((lambda(expr), operation)))
+        let forms = Rc::new(Forms::new(expr, block));
+        reading(move |input| expression(input, &forms))
     })
 }
 
-fn lambda<'s>(expr: impl Parse<'s, Expr>) -> Boxed<'s, Expr> {
-    let single = name_before(TokenSet::of(&[Token::FatArrow]));
-    let single = single.map(|name| vec![name]).then_ignore(token(Token::FatArrow));
+/// expr = NAME "=>" expr | "(" [ NAME { "," NAME } ] ")" "=>" expr | or
+pub(super) fn expression<'s>(input: &mut Reader<'s, '_>, forms: &Forms<'s>) -> Option<Expr> {
+    let next = place(input) + 1;
+    let is_lambda = match input.peek() {
+        Some(Token::LambdaParen) => true,
+        Some(token) => {
+            TokenSet::NAMES.has(token) && input.state().kind(next) == Some(Token::FatArrow)
+        }
+        None => false,
+    };
+    let expr = if is_lambda { run(input, &forms.lambda)? } else { or(input, forms)? };
+    input.state().mark(Production::Expr);
+    Some(expr)
+}
+
+/// NAME "=>" expr | "(" [ NAME { "," NAME } ] ")" "=>" expr
+pub(super) fn lambda<'s>(expr: impl Parse<'s, Expr>) -> Boxed<'s, ExprKind> {
+    let single = name().map(|name| vec![name]);
     let several = name().separated_by(token(Token::Comma)).allow_trailing().collect::<Vec<Name>>();
-    let several = token(Token::LambdaParen)
-        .ignore_then(several)
-        .then_ignore(token(Token::RParen))
-        .then_ignore(token(Token::FatArrow));
-    single
-        .or(several)
-        .then(expr.map(Arc::new))
-        .map_with(|(params, body), extra| {
-            let span = here(extra);
-            Expr { kind: ExprKind::Lambda { params, body }, span }
-        })
-        .boxed()
+    let several = token(Token::LambdaParen).ignore_then(several).then_ignore(token(Token::RParen));
+    let params = single.or(several).then_ignore(token(Token::FatArrow));
+    let lambda = params.then(expr.map(Arc::new));
+    lambda.map(|(params, body)| ExprKind::Lambda { params, body }).boxed()
 }

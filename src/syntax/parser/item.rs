@@ -1,6 +1,6 @@
 //! The file and its top-level items.
 
-use std::sync::Arc;
+use std::{rc::Rc, sync::Arc};
 
 use chumsky::prelude::*;
 
@@ -9,9 +9,10 @@ use super::{
     atom::{doc, marked, name, string, take, token},
     expr::expr,
     primary::record,
-    recover::{broken_stmt, statement_end},
+    reader::{Reader, accept, place, reading, recover, run},
+    recover::{broken_stmt, ends_statement},
     state::here,
-    stmt::{annotation, bind, block, fn_, stmt},
+    stmt::{Stmts, annotation, bind, block, fn_},
 };
 use crate::syntax::{
     ast::{
@@ -22,34 +23,92 @@ use crate::syntax::{
 };
 
 /// program = [ item { NL item } ]
-pub(super) fn program<'s>() -> Boxed<'s, Vec<Item>> {
+pub(super) fn program<'s>() -> impl Parse<'s, Vec<Item>> {
     let expr = expr().boxed();
     let block = block(expr.clone()).boxed();
-    let items = item(expr, block).separated_by(token(Token::Newline)).at_least(1).collect();
-    let items = end().map(|()| vec![]).or(items);
-    marked(Production::Program, items)
+    let items = Rc::new(Items::new(expr, block));
+    reading(move |input| {
+        let mut found = vec![];
+        while input.peek().is_some() {
+            found.push(items.whole(input));
+            if accept(input, TokenSet::of(&[Token::Newline])).is_none() {
+                break;
+            }
+        }
+        input.state().mark(Production::Program);
+        Some(found)
+    })
 }
 
-/// item = DOC NL item | use | param | group | set | output | export | test
-///      | "pub" NAME [":" type] "=" expr | "pub" fn | stmt
-fn item<'s>(expr: impl Parse<'s, Expr>, block: impl Parse<'s, Block>) -> Boxed<'s, Item> {
-    let text = string(expr.clone());
-    let kind = choice((
-        use_(text.clone(), expr.clone()).map(ItemKind::Use),
-        param(expr.clone()).map(ItemKind::Param),
-        group(text.clone()),
-        set(expr.clone()),
-        output(expr.clone()).map(ItemKind::Output),
-        export(text.clone(), expr.clone()),
-        test(text, block.clone()).map(ItemKind::Test),
-        public(expr.clone(), block.clone()),
-        stmt(expr, block).map(|stmt| ItemKind::Stmt { public: false, stmt }),
-    ));
-    let broken = broken_stmt().map(|stmt| ItemKind::Stmt { public: true, stmt });
-    let kind = kind.then_ignore(statement_end()).recover_with(via_parser(broken));
-    let item = kind.map_with(|kind, extra| Item { doc: None, kind, span: here(extra) });
-    let item = doc().or_not().then(item).map(|(doc, item)| Item { doc, ..item });
-    marked(Production::Item, item)
+/// The items: those that begin with a word of their own, and statements.
+struct Items<'s> {
+    doc: Boxed<'s, Option<Arc<str>>>,
+    worded: Boxed<'s, Option<ItemKind>>,
+    stmts: Stmts<'s>,
+}
+
+impl<'s> Items<'s> {
+    fn new(expr: impl Parse<'s, Expr>, block: impl Parse<'s, Block>) -> Items<'s> {
+        let text = string(expr.clone());
+        let worded = choice((
+            use_(text.clone(), expr.clone()).map(|item| ItemKind::Use(item.into())),
+            param(expr.clone()).map(|item| ItemKind::Param(item.into())),
+            group(text.clone()),
+            set(expr.clone()),
+            output(expr.clone()).map(ItemKind::Output),
+            export(text.clone(), expr.clone()),
+            test(text, block.clone()).map(|item| ItemKind::Test(item.into())),
+            public(expr.clone(), block.clone()),
+        ));
+        Items {
+            doc: doc().or_not().boxed(),
+            worded: worded.or_not().boxed(),
+            stmts: Stmts::new(expr, block),
+        }
+    }
+
+    /// An item up to its end; one that cannot be read is left out with a message.
+    fn whole(&self, input: &mut Reader<'s, '_>) -> Item {
+        let doc = match input.peek() {
+            Some(Token::Doc) => run(input, &self.doc),
+            _ => None,
+        };
+        let start = place(input);
+        let before = input.save();
+        let kind = match self.kind(input).filter(|_| ends_statement(input)) {
+            Some(kind) => kind,
+            None => ItemKind::Stmt { public: true, stmt: recover(input, before, broken_stmt) },
+        };
+        let end = place(input);
+        let state = input.state();
+        state.mark(Production::Item);
+        Item { doc, kind, span: state.span(start, end) }
+    }
+
+    /// item = DOC NL item | use | param | group | set | output | export | test
+    ///      | "pub" NAME [":" type] "=" expr | "pub" fn | stmt
+    fn kind(&self, input: &mut Reader<'s, '_>) -> Option<ItemKind> {
+        const WORDS: TokenSet = TokenSet::of(&[
+            Token::Use,
+            Token::Param,
+            Token::Group,
+            Token::Set,
+            Token::Part,
+            Token::View,
+            Token::Shade,
+            Token::Sheet,
+            Token::Export,
+            Token::Test,
+            Token::Pub,
+        ]);
+        if input.peek().is_some_and(|token| WORDS.has(token))
+            && let Some(kind) = run(input, &self.worded)
+        {
+            return Some(kind);
+        }
+        let stmt = self.stmts.read(input)?;
+        Some(ItemKind::Stmt { public: false, stmt })
+    }
 }
 
 /// use = "use" STRING ["as" NAME] ["with" record]

@@ -1,5 +1,9 @@
 //! From tokens to the tree, with chumsky: one function for each production of
 //! `grammar/katachi.ebnf`, named like it.
+//!
+//! What begins with a word or bracket of its own is put together from combinators. Where nearly every
+//! token is met (items, statements, operators, calls and single names) the next token decides by
+//! itself, so those productions [read](reader) it by hand, inside the same chumsky input.
 
 mod atom;
 mod expr;
@@ -10,6 +14,7 @@ mod item;
 mod operator;
 mod primary;
 mod production;
+mod reader;
 mod recover;
 mod state;
 mod stmt;
@@ -61,7 +66,7 @@ fn read(source: SourceId, text: &str) -> (Program, Vec<Diagnostic>, Productions)
     let balanced = bracket::balance(source, text, tokens);
     diagnostics.extend(balanced.diagnostics);
     let tokens = depth::limit(source, balanced.tokens, &mut diagnostics);
-    let tokens = newline::newlines(text, &tokens);
+    let tokens = newline::newlines(text, tokens);
     let mut state = State::new(source, text, &tokens);
     let (items, faults) =
         item::program().parse_with_state(&tokens.kinds, &mut state).into_output_errors();

@@ -4,13 +4,15 @@
 //! through all of them: a combinator for each would be tried at every operand, and most operands have
 //! no operator behind them.
 
-use chumsky::{input::InputRef, prelude::*};
-
-use super::{Boxed, Extra, Fault, Input, Parse, Production, atom::take};
+use super::{
+    Production,
+    primary::{Forms, postfix},
+    reader::{Reader, note, place},
+};
 use crate::{
     base::Span,
     syntax::{
-        ast::{BinaryOp, Expr, ExprKind, UnaryOp},
+        ast::{Binary, BinaryOp, Chain, Expr, ExprKind, Link, Range, UnaryOp},
         token::{Token, TokenSet},
     },
 };
@@ -37,6 +39,18 @@ enum Level {
     /// power = postfix [ "^" unary ]
     Power,
 }
+
+const LEVELS: [Level; 9] = [
+    Level::Or,
+    Level::And,
+    Level::Not,
+    Level::Cmp,
+    Level::Range,
+    Level::Sum,
+    Level::Prod,
+    Level::Unary,
+    Level::Power,
+];
 
 /// A level with infix operators: the operators, what stands right of one, and the tightest level
 /// whose operators may follow what it made (a comparison takes no second one).
@@ -76,43 +90,60 @@ const INFIX: [Infix; 7] = {
     ]
 };
 
-/// Where the parser is.
-type Reader<'s, 'p> = InputRef<'s, 'p, Input<'s>, Extra<'s>>;
+/// What may follow an operand; the operand itself has read it, if it is there.
+const SUFFIXES: TokenSet =
+    TokenSet::of(&[Token::Dot, Token::LParen, Token::LambdaParen, Token::LBracket]);
+
+/// What may follow an expression whose loosest operator is of the level `ceiling`, where operators of
+/// `floor` and tighter ones are read.
+const fn following(floor: Level, ceiling: Level) -> TokenSet {
+    let mut set = if ceiling as u8 == Level::Power as u8 { SUFFIXES } else { TokenSet::EMPTY };
+    let mut at = 0;
+    while at < INFIX.len() {
+        let level = INFIX[at].level as u8;
+        if floor as u8 <= level && level <= ceiling as u8 {
+            set = set.or(INFIX[at].operators);
+        }
+        at += 1;
+    }
+    set
+}
+
+/// [`following`] for every pair of levels.
+const FOLLOWING: [[TokenSet; LEVELS.len()]; LEVELS.len()] = {
+    let mut table = [[TokenSet::EMPTY; LEVELS.len()]; LEVELS.len()];
+    let mut at = 0;
+    while at < LEVELS.len() * LEVELS.len() {
+        let (floor, ceiling) = (at / LEVELS.len(), at % LEVELS.len());
+        table[floor][ceiling] = following(LEVELS[floor], LEVELS[ceiling]);
+        at += 1;
+    }
+    table
+};
 
 /// Room that one step of climbing may need on the stack, and what is added when there is less.
 const STACK: (usize, usize) = (64 << 10, 1 << 20);
 
 /// Everything from `or` to `power`, over operands of `postfix`.
-pub(super) fn or<'s>(postfix: impl Parse<'s, Expr>) -> Boxed<'s, Expr> {
-    let operand = postfix.or_not().boxed();
-    custom::<_, Input<'s>, _, Extra<'s>>(move |input| {
-        let at = *input.cursor().inner();
-        // What was expected has been noted by the operand, at the token where it stopped.
-        climb(input, &operand, Level::Or).ok_or(Fault { at, expected: TokenSet::EMPTY })
-    })
-    .boxed()
+pub(super) fn or<'s>(input: &mut Reader<'s, '_>, forms: &Forms<'s>) -> Option<Expr> {
+    climb(input, forms, Level::Or)
 }
 
-/// An expression of a level or a tighter one; `None`, with nothing read, where none begins.
-fn climb<'s>(
-    input: &mut Reader<'s, '_>,
-    operand: &Boxed<'s, Option<Expr>>,
-    floor: Level,
-) -> Option<Expr> {
+/// An expression of a level or a tighter one.
+fn climb<'s>(input: &mut Reader<'s, '_>, forms: &Forms<'s>, floor: Level) -> Option<Expr> {
     stacker::maybe_grow(STACK.0, STACK.1, || {
-        let (mut left, mut ceiling) = prefix(input, operand, floor)?;
+        let (mut left, mut ceiling) = prefix(input, forms, floor)?;
         loop {
             let before = input.save();
-            let Some((token, span)) = sign(input, operators(floor, ceiling)) else {
-                return Some(left);
-            };
+            let expected = FOLLOWING[floor as usize][ceiling as usize];
+            let Some((token, span)) = sign(input, expected) else { return Some(left) };
             let infix = infix_of(token);
-            let Some(right) = climb(input, operand, infix.right) else {
+            let Some(right) = climb(input, forms, infix.right) else {
                 input.rewind(before);
                 return Some(left);
             };
             left = match infix.level {
-                Level::Range => range(left, token, right, step(input, operand)),
+                Level::Range => range(left, token, right, step(input, forms)),
                 _ => binary(left, (token, span), right),
             };
             input.state().mark(infix.production);
@@ -124,52 +155,50 @@ fn climb<'s>(
 /// What an expression begins with, and the tightest level whose operators may follow it.
 fn prefix<'s>(
     input: &mut Reader<'s, '_>,
-    operand: &Boxed<'s, Option<Expr>>,
+    forms: &Forms<'s>,
     floor: Level,
 ) -> Option<(Expr, Level)> {
-    const SIGN: TokenSet = TokenSet::of(&[Token::Minus]);
-    const SIGNS: TokenSet = TokenSet::of(&[Token::Minus, Token::Not]);
-    let before = input.save();
-    let signs = if floor <= Level::Not { SIGNS } else { SIGN };
-    let Some((token, span)) = sign(input, signs) else {
-        return Some((input.parse(operand).ok()??, Level::Power));
+    let (op, production, level, ceiling) = match input.peek() {
+        Some(Token::Not) if floor <= Level::Not => {
+            (UnaryOp::Not, Production::Not, Level::Not, Level::And)
+        }
+        Some(Token::Minus) => (UnaryOp::Negate, Production::Unary, Level::Unary, Level::Prod),
+        _ => return Some((postfix(input, forms)?, Level::Power)),
     };
-    let (op, production, level, ceiling) = match token {
-        Token::Not => (UnaryOp::Not, Production::Not, Level::Not, Level::And),
-        _ => (UnaryOp::Negate, Production::Unary, Level::Unary, Level::Prod),
-    };
-    let Some(inner) = climb(input, operand, level) else {
-        input.rewind(before);
-        return None;
-    };
-    input.state().mark(production);
-    let (kind_span, operand) = (span.to(inner.span), Box::new(inner));
-    let kind = ExprKind::Unary { op, op_span: span, operand };
-    Some((Expr { kind, span: kind_span }, ceiling))
+    let at = place(input);
+    input.skip();
+    let operand = Box::new(climb(input, forms, level)?);
+    let state = input.state();
+    state.mark(production);
+    let op_span = state.span(at, at + 1);
+    let span = op_span.to(operand.span);
+    Some((Expr { kind: ExprKind::Unary { op, op_span, operand }, span }, ceiling))
 }
 
 /// The `step` of a range.
-fn step<'s>(input: &mut Reader<'s, '_>, operand: &Boxed<'s, Option<Expr>>) -> Option<Expr> {
+fn step<'s>(input: &mut Reader<'s, '_>, forms: &Forms<'s>) -> Option<Expr> {
     let before = input.save();
     sign(input, TokenSet::of(&[Token::Step]))?;
-    let step = climb(input, operand, Level::Sum);
+    let step = climb(input, forms, Level::Sum);
     if step.is_none() {
         input.rewind(before);
     }
     step
 }
 
-/// One of the given tokens with its place.
-fn sign(input: &mut Reader, set: TokenSet) -> Option<(Token, Span)> {
-    let at = *input.cursor().inner();
-    let token = input.parse(take(set).or_not()).ok()??;
-    Some((token, input.state().span(at, at + 1)))
-}
-
-/// The infix operators of the levels from `floor` to `ceiling`.
-fn operators(floor: Level, ceiling: Level) -> TokenSet {
-    let levels = INFIX.iter().filter(|infix| floor <= infix.level && infix.level <= ceiling);
-    levels.fold(TokenSet::EMPTY, |set, infix| set.or(infix.operators))
+/// One of the given tokens, but for suffixes, with its place.
+fn sign(input: &mut Reader<'_, '_>, set: TokenSet) -> Option<(Token, Span)> {
+    let at = place(input);
+    match input.peek() {
+        Some(token) if set.without(SUFFIXES).has(token) => {
+            input.skip();
+            Some((token, input.state().span(at, at + 1)))
+        }
+        _ => {
+            note(input, set);
+            None
+        }
+    }
 }
 
 fn infix_of(token: Token) -> &'static Infix {
@@ -197,19 +226,38 @@ fn op_of(token: Token) -> BinaryOp {
     }
 }
 
-fn binary(left: Expr, (op, op_span): (Token, Span), right: Expr) -> Expr {
-    let span = left.span.to(right.span);
-    let (left, right) = (Box::new(left), Box::new(right));
-    Expr { kind: ExprKind::Binary { op: op_of(op), op_span, left, right }, span }
+/// Whether operators of the same level stand side by side in one [`Chain`].
+fn chains(a: BinaryOp, b: BinaryOp) -> bool {
+    use BinaryOp::*;
+    let level = |op| match op {
+        Or => Some(0),
+        And => Some(1),
+        Add | Subtract | Join => Some(2),
+        Multiply | Divide | Remainder | Intersect => Some(3),
+        _ => None,
+    };
+    level(a).is_some() && level(a) == level(b)
+}
+
+fn binary(left: Expr, (sign, op_span): (Token, Span), right: Expr) -> Expr {
+    let (op, span) = (op_of(sign), left.span.to(right.span));
+    let kind = match left.kind {
+        ExprKind::Chain(mut chain) if chains(chain.links[0].op, op) => {
+            chain.links.push(Link { op, op_span, right });
+            ExprKind::Chain(chain)
+        }
+        ExprKind::Binary(inner) if chains(inner.op, op) => {
+            let second = Link { op, op_span, right };
+            let first = Link { op: inner.op, op_span: inner.op_span, right: inner.right };
+            ExprKind::Chain(Box::new(Chain { first: inner.left, links: vec![first, second] }))
+        }
+        _ => ExprKind::Binary(Box::new(Binary { op, op_span, left, right })),
+    };
+    Expr { kind, span }
 }
 
 fn range(start: Expr, dots: Token, end: Expr, step: Option<Expr>) -> Expr {
     let span = start.span.to(step.as_ref().unwrap_or(&end).span);
-    let kind = ExprKind::Range {
-        start: Box::new(start),
-        end: Box::new(end),
-        inclusive: dots == Token::DotDot,
-        step: step.map(Box::new),
-    };
-    Expr { kind, span }
+    let inclusive = dots == Token::DotDot;
+    Expr { kind: ExprKind::Range(Box::new(Range { start, end, inclusive, step })), span }
 }

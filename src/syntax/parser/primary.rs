@@ -4,122 +4,203 @@ use chumsky::prelude::*;
 
 use super::{
     Boxed, Parse, Production,
-    atom::{marked, member_name, name, name_before, number, string, take, token},
-    recover::rest_of_bracket,
-    state::here,
+    atom::{marked, name, string, take, token},
+    expr::{expression, lambda},
+    reader::{Reader, accept, note, place, recover, run},
+    recover::{rest_of_bracket, skip_bracket},
+    state::{Rows, here},
 };
-use crate::{
-    base::Span,
-    syntax::{
-        ast::{Argument, Binder, Block, Expr, ExprKind, Field, Stmt, StmtKind},
-        token::{Token, TokenSet},
-    },
+use crate::syntax::{
+    ast::{Argument, Binder, Block, Expr, ExprKind, Field, For, If, Member, Name, Stmt, StmtKind},
+    token::{Token, TokenSet},
 };
 
-/// What directly follows an expression.
-#[derive(Clone)]
-enum Suffix {
-    Member(crate::syntax::ast::Name),
-    Call(Option<Vec<Argument>>),
-    Index(Option<Box<Expr>>),
+/// The rarer forms of an expression, each by the token it begins with.
+pub(super) struct Forms<'s> {
+    pub lambda: Boxed<'s, Option<Expr>>,
+    text: Boxed<'s, Option<Expr>>,
+    record: Boxed<'s, Option<Expr>>,
+    run: Boxed<'s, Option<Expr>>,
+    decision: Boxed<'s, Option<Expr>>,
+    repeat: Boxed<'s, Option<Expr>>,
 }
 
-/// The inside of a bracket whose opening has been read, with its end; `None` where it is broken.
-fn inside<'s, T: 's>(content: impl Parse<'s, T>, closer: Token) -> impl Parse<'s, Option<T>> {
-    let whole = content.then_ignore(token(closer)).map(Some);
-    whole.recover_with(via_parser(rest_of_bracket().map(|()| None)))
-}
-
-fn commas<'s, T: 's>(element: impl Parse<'s, T>) -> impl Parse<'s, Vec<T>> {
-    element.separated_by(token(Token::Comma)).allow_trailing().collect()
+impl<'s> Forms<'s> {
+    pub fn new(expr: impl Parse<'s, Expr>, block: impl Parse<'s, Block>) -> Forms<'s> {
+        let spanned = |kind: Boxed<'s, ExprKind>| {
+            kind.map_with(|kind, extra| Expr { kind, span: here(extra) }).or_not().boxed()
+        };
+        let run = token(Token::Do).ignore_then(block.clone());
+        Forms {
+            lambda: spanned(lambda(expr.clone())),
+            text: spanned(string(expr.clone()).map(|text| ExprKind::Text(text.into())).boxed()),
+            record: spanned(record(expr.clone())),
+            run: spanned(run.map(|block| ExprKind::Do(block.into())).boxed()),
+            decision: if_(expr.clone(), block.clone()).or_not().boxed(),
+            repeat: spanned(for_(expr, block)),
+        }
+    }
 }
 
 /// postfix = primary { "." NAME | "(" [ arg { "," arg } [","] ] ")" | "[" expr "]" }
-pub(super) fn postfix<'s>(
-    primary: impl Parse<'s, Expr>,
-    expr: impl Parse<'s, Expr>,
-) -> Boxed<'s, Expr> {
-    const CALL: TokenSet = TokenSet::of(&[Token::LParen, Token::LambdaParen]);
-    let member = token(Token::Dot).ignore_then(member_name()).map(Suffix::Member);
-    let arguments = inside(commas(arg(expr.clone())), Token::RParen);
-    let call = take(CALL).ignore_then(arguments).map(Suffix::Call);
-    let index = inside(expr.map(Box::new), Token::RBracket);
-    let index = token(Token::LBracket).ignore_then(index).map(Suffix::Index);
-    let suffix = choice((member, call, index)).boxed();
-    primary
-        .foldl_with(suffix.repeated(), |object, suffix, extra| {
-            let span = here(extra);
-            extra.state().mark(Production::Postfix);
-            follow(object, suffix, span)
-        })
-        .boxed()
+pub(super) fn postfix<'s>(input: &mut Reader<'s, '_>, forms: &Forms<'s>) -> Option<Expr> {
+    let start = place(input);
+    let mut object = primary(input, forms)?;
+    loop {
+        let before = input.save();
+        let kind = match input.peek() {
+            Some(Token::Dot) => match member_name(input) {
+                Some(name) => ExprKind::Member(Box::new(Member { object, name })),
+                None => {
+                    input.rewind(before);
+                    return Some(object);
+                }
+            },
+            Some(Token::LParen | Token::LambdaParen) => {
+                let commas = |input: &mut Reader<'s, '_>| commas(input, forms, arg);
+                match inside(input, Token::RParen, commas) {
+                    Some(arguments) => ExprKind::Call { callee: Box::new(object), arguments },
+                    None => ExprKind::Error,
+                }
+            }
+            Some(Token::LBracket) => {
+                match inside(input, Token::RBracket, |input| expression(input, forms)) {
+                    Some(index) => ExprKind::Index { object: object.into(), index: index.into() },
+                    None => ExprKind::Error,
+                }
+            }
+            _ => return Some(object),
+        };
+        let end = place(input);
+        let state = input.state();
+        state.mark(Production::Postfix);
+        object = Expr { kind, span: state.span(start, end) };
+    }
 }
 
-fn follow(object: Expr, suffix: Suffix, span: Span) -> Expr {
-    let object = Box::new(object);
-    let kind = match suffix {
-        Suffix::Member(name) => ExprKind::Member { object, name },
-        Suffix::Call(Some(arguments)) => ExprKind::Call { callee: object, arguments },
-        Suffix::Index(Some(index)) => ExprKind::Index { object, index },
-        Suffix::Call(None) | Suffix::Index(None) => ExprKind::Error,
-    };
-    Expr { kind, span }
+/// The name behind a `.`: any word.
+fn member_name(input: &mut Reader<'_, '_>) -> Option<Name> {
+    input.skip();
+    let at = place(input);
+    accept(input, TokenSet::NAMES.or(TokenSet::RESERVED))?;
+    Some(input.state().name(at))
+}
+
+/// What stands in the brackets that open here; `None`, behind them, where it is broken.
+fn inside<'s, T>(
+    input: &mut Reader<'s, '_>,
+    closer: Token,
+    content: impl FnOnce(&mut Reader<'s, '_>) -> Option<T>,
+) -> Option<T> {
+    input.skip();
+    let before = input.save();
+    let found = content(input);
+    if found.is_some() && accept(input, TokenSet::of(&[closer])).is_some() {
+        return found;
+    }
+    recover(input, before, skip_bracket);
+    None
+}
+
+/// Elements with commas between them; a comma may stand behind the last.
+fn commas<'s, T>(
+    input: &mut Reader<'s, '_>,
+    forms: &Forms<'s>,
+    element: impl Fn(&mut Reader<'s, '_>, &Forms<'s>) -> Option<T>,
+) -> Option<Vec<T>>
+where
+    Rows: AsMut<Vec<T>>,
+{
+    let first = input.state().rows.as_mut().len();
+    loop {
+        let before = input.save();
+        let Some(found) = element(input, forms) else {
+            input.rewind(before);
+            break;
+        };
+        input.state().rows.as_mut().push(found);
+        if accept(input, TokenSet::of(&[Token::Comma])).is_none() {
+            break;
+        }
+    }
+    // Taken out of a shared row, since a vector that grows keeps room it does not need.
+    Some(input.state().rows.as_mut().drain(first..).collect())
 }
 
 /// arg = NAME "=" expr | ".." expr | expr
-fn arg<'s>(expr: impl Parse<'s, Expr>) -> Boxed<'s, Argument> {
-    let named = name_before(TokenSet::of(&[Token::Assign])).then_ignore(token(Token::Assign));
-    let named = named.then(expr.clone()).map(|(name, value)| Argument::Named { name, value });
-    let spread = token(Token::DotDot).ignore_then(expr.clone()).map(Argument::Spread);
-    marked(Production::Arg, choice((named, spread, expr.map(Argument::Positional))))
+fn arg<'s>(input: &mut Reader<'s, '_>, forms: &Forms<'s>) -> Option<Argument> {
+    let at = place(input);
+    let argument = match input.peek() {
+        Some(Token::DotDot) => {
+            input.skip();
+            Argument::Spread(expression(input, forms)?)
+        }
+        Some(token)
+            if TokenSet::NAMES.has(token) && input.state().kind(at + 1) == Some(Token::Assign) =>
+        {
+            input.skip();
+            input.skip();
+            let name = input.state().name(at);
+            Argument::Named { name, value: expression(input, forms)? }
+        }
+        _ => Argument::Positional(expression(input, forms)?),
+    };
+    input.state().mark(Production::Arg);
+    Some(argument)
 }
 
 /// primary = NUMBER | STRING | NAME | "true" | "false" | "(" expr ")" | "[" ... "]" | record
 ///         | "do" block | if | "for" binder { "," binder } [ "if" expr ] block
-pub(super) fn primary<'s>(
-    expr: impl Parse<'s, Expr>,
-    block: impl Parse<'s, Block>,
-) -> Boxed<'s, Expr> {
-    let spanned = |kind: Boxed<'s, ExprKind>| {
-        kind.map_with(|kind, extra| Expr { kind, span: here(extra) }).boxed()
+fn primary<'s>(input: &mut Reader<'s, '_>, forms: &Forms<'s>) -> Option<Expr> {
+    let start = place(input);
+    let expr = match input.peek() {
+        Some(Token::StringStart) => run(input, &forms.text)?,
+        Some(Token::LBrace) => run(input, &forms.record)?,
+        Some(Token::Do) => run(input, &forms.run)?,
+        Some(Token::If) => run(input, &forms.decision)?,
+        Some(Token::For) => run(input, &forms.repeat)?,
+        Some(token) if PLAIN.has(token) => {
+            input.skip();
+            input.state().atom(token, start)
+        }
+        Some(token @ (Token::LParen | Token::LBracket)) => {
+            let kind = bracketed(input, forms, token).unwrap_or(ExprKind::Error);
+            let end = place(input);
+            Expr { kind, span: input.state().span(start, end) }
+        }
+        _ => {
+            note(input, TokenSet::STARTS);
+            return None;
+        }
     };
-    let name = name().map(ExprKind::Name);
-    let truth = take(TokenSet::of(&[Token::True, Token::False]));
-    let truth = truth.map(|token| ExprKind::Bool(token == Token::True));
-    let bad = token(Token::Bad).map(|_| ExprKind::Error);
-    let run = token(Token::Do).ignore_then(block.clone()).map(ExprKind::Do);
-    let parser = choice((
-        spanned(name.boxed()),
-        number(),
-        spanned(string(expr.clone()).map(ExprKind::Text).boxed()),
-        spanned(paren(expr.clone())),
-        spanned(list(expr.clone())),
-        spanned(record(expr.clone())),
-        spanned(choice((truth, bad, run)).boxed()),
-        if_(expr.clone(), block.clone()),
-        spanned(for_(expr, block)),
-    ));
-    marked(Production::Primary, parser)
+    input.state().mark(Production::Primary);
+    Some(expr)
 }
 
-fn paren<'s>(expr: impl Parse<'s, Expr>) -> Boxed<'s, ExprKind> {
-    let inner = inside(expr.map(Box::new), Token::RParen);
-    let paren = token(Token::LParen).ignore_then(inner);
-    paren.map(|inner| inner.map_or(ExprKind::Error, ExprKind::Paren)).boxed()
-}
+/// The tokens that are an expression by themselves.
+const PLAIN: TokenSet =
+    TokenSet::of(&[Token::Number, Token::True, Token::False, Token::Bad]).or(TokenSet::NAMES);
 
-fn list<'s>(expr: impl Parse<'s, Expr>) -> Boxed<'s, ExprKind> {
-    let list = token(Token::LBracket).ignore_then(inside(commas(expr), Token::RBracket));
-    list.map(|elements| elements.map_or(ExprKind::Error, ExprKind::List)).boxed()
+/// "(" expr ")" | "[" [ expr { "," expr } [","] ] "]"
+fn bracketed<'s>(input: &mut Reader<'s, '_>, forms: &Forms<'s>, opener: Token) -> Option<ExprKind> {
+    if opener == Token::LParen {
+        let inner = inside(input, Token::RParen, |input| expression(input, forms))?;
+        return Some(ExprKind::Paren(Box::new(inner)));
+    }
+    let elements = |input: &mut Reader<'s, '_>| commas(input, forms, expression);
+    Some(ExprKind::List(inside(input, Token::RBracket, elements)?))
 }
 
 /// record = "{" [ field { ("," | NL) field } [","] ] "}"
 pub(super) fn record<'s>(expr: impl Parse<'s, Expr>) -> Boxed<'s, ExprKind> {
     const SEPARATORS: TokenSet = TokenSet::of(&[Token::Comma, Token::Newline]);
     let fields = field(expr).separated_by(take(SEPARATORS)).allow_trailing().collect();
-    let record = token(Token::LBrace).ignore_then(inside(fields, Token::RBrace));
-    let record = record.map(|fields| fields.map_or(ExprKind::Error, ExprKind::Record));
-    marked(Production::Record, record)
+    let whole = fields.then_ignore(token(Token::RBrace)).map(|mut fields: Vec<Field>| {
+        fields.shrink_to_fit();
+        ExprKind::Record(fields)
+    });
+    let whole = whole.recover_with(via_parser(rest_of_bracket().map(|()| ExprKind::Error)));
+    marked(Production::Record, token(Token::LBrace).ignore_then(whole))
 }
 
 /// field = NAME [ "=" expr ] | ".." expr
@@ -135,12 +216,12 @@ fn if_<'s>(expr: impl Parse<'s, Expr>, block: impl Parse<'s, Block>) -> Boxed<'s
     let chain = recursive(|chain| {
         let otherwise = block.clone().or(chain.map(block_of));
         token(Token::If)
-            .ignore_then(expr.map(Box::new))
+            .ignore_then(expr)
             .then(block)
             .then(token(Token::Else).ignore_then(otherwise).or_not())
             .map_with(|((condition, then), otherwise), extra| {
-                let span = here(extra);
-                Expr { kind: ExprKind::If { condition, then, otherwise }, span }
+                let kind = ExprKind::If(Box::new(If { condition, then, otherwise }));
+                Expr { kind, span: here(extra) }
             })
     });
     marked(Production::If, chain)
@@ -153,12 +234,15 @@ fn block_of(expr: Expr) -> Block {
 
 fn for_<'s>(expr: impl Parse<'s, Expr>, block: impl Parse<'s, Block>) -> Boxed<'s, ExprKind> {
     let binders = binder(expr.clone()).separated_by(token(Token::Comma)).at_least(1).collect();
-    let condition = token(Token::If).ignore_then(expr.map(Box::new)).or_not();
+    let condition = token(Token::If).ignore_then(expr).or_not();
     token(Token::For)
         .ignore_then(binders)
         .then(condition)
         .then(block)
-        .map(|((binders, condition), body)| ExprKind::For { binders, condition, body })
+        .map(|((mut binders, condition), body): ((Vec<Binder>, _), _)| {
+            binders.shrink_to_fit();
+            ExprKind::For(Box::new(For { binders, condition, body }))
+        })
         .boxed()
 }
 

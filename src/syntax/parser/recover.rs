@@ -1,14 +1,16 @@
 //! How the parser goes on behind an error: at the end of the bracket or of the statement.
 
-use chumsky::{input::InputRef, prelude::*};
+use chumsky::prelude::*;
 
-use super::{Extra, Fault, Input, Parse, state::State};
+use super::{
+    Extra, Input, Parse,
+    reader::{Reader, note, place},
+    state::State,
+};
 use crate::syntax::{
-    ast::{Expr, ExprKind, Name, Stmt, StmtKind},
+    ast::{Expr, ExprKind, Stmt, StmtKind},
     token::{Token, TokenSet},
 };
-
-type Reader<'s, 'p> = InputRef<'s, 'p, Input<'s>, Extra<'s>>;
 
 /// Goes up to the bracket that closes the innermost one open here. Brackets are paired, so there
 /// is one unless the end of the file comes first.
@@ -37,48 +39,45 @@ fn skip_stranded_braces(input: &mut Reader<'_, '_>) {
     }
 }
 
+/// Goes behind the end of the innermost bracket open here.
+pub(super) fn skip_bracket(input: &mut Reader<'_, '_>) {
+    skip_to_closer(input, TokenSet::EMPTY);
+    input.skip();
+}
+
 /// The rest of a bracket, with its end.
 pub(super) fn rest_of_bracket<'s>() -> impl Parse<'s, ()> {
     custom::<_, Input<'s>, _, Extra<'s>>(|input| {
-        skip_to_closer(input, TokenSet::EMPTY);
-        input.skip();
+        skip_bracket(input);
         Ok(())
     })
 }
 
-/// The end of a statement, not read: a line end, a closing brace or the end of the file.
-pub(super) fn statement_end<'s>() -> impl Parse<'s, ()> {
+/// Whether the statement just read ends here: at a line end, a closing brace or the end of the file.
+pub(super) fn ends_statement(input: &mut Reader<'_, '_>) -> bool {
     const END: TokenSet = TokenSet::of(&[Token::Newline, Token::RBrace]);
-    custom::<_, Input<'s>, _, Extra<'s>>(|input| match input.peek() {
-        Some(token) if !END.has(token) => {
-            Err(Fault { at: *input.cursor().inner(), expected: TokenSet::of(&[Token::Newline]) })
-        }
-        _ => Ok(()),
-    })
+    let ends = input.peek().is_none_or(|token| END.has(token));
+    if !ends {
+        note(input, TokenSet::of(&[Token::Newline]));
+    }
+    ends
 }
 
 /// A statement that cannot be read, up to its end. What it would have named stays known.
-pub(super) fn broken_stmt<'s>() -> impl Parse<'s, Stmt> {
-    custom::<_, Input<'s>, _, Extra<'s>>(|input| {
-        let start = *input.cursor().inner();
-        let cursor = input.cursor();
-        skip_to_closer(input, TokenSet::of(&[Token::Newline]));
-        skip_stranded_braces(input);
-        let end = *input.cursor().inner();
-        let tokens = input.slice_since(&cursor..);
-        Ok(named_error(input.state(), tokens, start, end))
-    })
+pub(super) fn broken_stmt(input: &mut Reader<'_, '_>) -> Stmt {
+    let start = input.cursor();
+    skip_to_closer(input, TokenSet::of(&[Token::Newline]));
+    skip_stranded_braces(input);
+    let end = place(input);
+    let tokens = input.slice_since(&start..);
+    named_error(input.state(), tokens, *start.inner(), end)
 }
 
 fn named_error(state: &mut State<'_>, tokens: &[Token], start: usize, end: usize) -> Stmt {
     let span = state.span(start, end);
     let error = Expr { kind: ExprKind::Error, span };
     let kind = match defined(tokens) {
-        Some(at) => {
-            let at = start + at;
-            let name = Name { text: state.word(at), span: state.span(at, at + 1) };
-            StmtKind::Bind { name, ty: None, value: error }
-        }
+        Some(at) => StmtKind::Bind { name: state.name(start + at), ty: None, value: error },
         None => StmtKind::Expr(error),
     };
     Stmt { kind, span }

@@ -1,7 +1,7 @@
 //! The parser on whole texts.
 
 use super::*;
-use crate::syntax::ast::{Expr, ExprKind, ItemKind, Piece, StmtKind};
+use crate::syntax::ast::{self, Expr, ExprKind, ItemKind, Piece, StmtKind};
 
 fn words(text: &str) -> Vec<String> {
     let (_, diagnostics) = parse(SourceId(0), text);
@@ -43,8 +43,8 @@ fn deep_texts(count: usize) -> Vec<String> {
         repeated("a => ", count, "1", ""),
         repeated("(a, b) => ", count, "1", ""),
         repeated("2^", count, "1", ""),
-        repeated("1+", count, "1", ""),
-        repeated("1 and ", count, "1", ""),
+        repeated("if 1 + ", count, "1", ""),
+        repeated("1 + if a { 2 } else ", count, "{ 3 }", ""),
         repeated("a.b", count, "", ".c"),
         repeated("a", 1, "", "(1)").replace("(1)", &"(1)".repeat(count)),
         repeated("f(", count, "1", ")"),
@@ -67,6 +67,19 @@ fn nesting_too_deep_is_an_error_not_a_crash() {
         }
     };
     std::thread::Builder::new().stack_size(2 << 20).spawn(run).unwrap().join().unwrap();
+}
+
+#[test]
+fn what_stands_side_by_side_is_not_deep() {
+    let count = 100_000;
+    for term in ["a + ", "a * ", "a and ", "a or ", "f(a)[1].b ++ ", "-a^2 - ", "not a < 2 and "] {
+        let text = format!("x = {}a", term.repeat(count));
+        let (program, diagnostics) = parse(SourceId(0), &text);
+        assert_eq!(diagnostics, [], "{term}");
+        assert_eq!(program.clone(), program);
+    }
+    let mixed = "x = ".to_string() + &"a * b + c & d < e and ".repeat(count) + "f";
+    assert_eq!(words(&mixed), [""; 0]);
 }
 
 #[test]
@@ -107,15 +120,19 @@ fn show(expr: &Expr) -> String {
         ExprKind::Name(name) => name.text.to_string(),
         ExprKind::Paren(inner) => show(inner),
         ExprKind::Unary { op, operand, .. } => format!("({op:?} {})", show(operand)),
-        ExprKind::Binary { op, left, right, .. } => {
-            format!("({} {op:?} {})", show(left), show(right))
+        ExprKind::Binary(binary) => {
+            format!("({} {:?} {})", show(&binary.left), binary.op, show(&binary.right))
         }
-        ExprKind::Range { start, end, inclusive, step } => {
-            let step = step.as_ref().map(|s| format!(" step {}", show(s)));
-            let dots = if *inclusive { ".." } else { "..<" };
-            format!("({}{dots}{}{})", show(start), show(end), step.unwrap_or_default())
+        ExprKind::Chain(chain) => chain.links.iter().fold(show(&chain.first), |left, link| {
+            format!("({left} {:?} {})", link.op, show(&link.right))
+        }),
+        ExprKind::Range(range) => {
+            let step = range.step.as_ref().map(|s| format!(" step {}", show(s)));
+            let dots = if range.inclusive { ".." } else { "..<" };
+            let ends = (show(&range.start), show(&range.end));
+            format!("({}{dots}{}{})", ends.0, ends.1, step.unwrap_or_default())
         }
-        ExprKind::Member { object, name } => format!("{}.{}", show(object), name.text),
+        ExprKind::Member(member) => format!("{}.{}", show(&member.object), member.name.text),
         ExprKind::Call { callee, arguments } => format!("{}({})", show(callee), arguments.len()),
         ExprKind::Lambda { params, body } => format!("({} => {})", params.len(), show(body)),
         other => format!("{other:?}"),
@@ -189,7 +206,8 @@ fn spans_are_exact() {
     let (program, _) = parse(SourceId(0), text);
     let ItemKind::Stmt { stmt, .. } = &program.items[0].kind else { panic!() };
     let StmtKind::Bind { value, .. } = &stmt.kind else { panic!() };
-    let ExprKind::Binary { left, right, op_span, .. } = &value.kind else { panic!() };
+    let ExprKind::Binary(binary) = &value.kind else { panic!() };
+    let ast::Binary { left, right, op_span, .. } = &**binary;
     let slice = |span: Span| &text[span.start as usize..span.end as usize];
     assert_eq!(slice(stmt.span), text.trim_end());
     assert_eq!(slice(left.span), "f(a , b )");

@@ -273,6 +273,65 @@ fn long_sums_of_shapes_take_little_memory() {
 }
 
 #[test]
+fn operators_side_by_side_have_no_limit_but_that_of_steps() {
+    let chain = |term: &str, last: &str| term.repeat(100_000) + last;
+    holds(&format!("assert {} == 100001", chain("1 + ", "1")));
+    holds(&format!("assert {} == 2", chain("2 / 4 * 2 * ", "2")));
+    holds(&format!("a = true\nassert {}", chain("a and ", "a")));
+    holds(&format!("a = false\nassert {}", chain("a or ", "true")));
+    holds(&format!("b = [1]\nassert len({}) == 1001", "b ++ ".repeat(1000) + "b"));
+    holds(&format!("b = box(1, 1, 1)\npart p = {}", chain("b + ", "b")));
+    refuses(
+        &format!("a = {}", chain("1 + ", "2deg + 1mm")),
+        &["dimensions differ in `+`: an angle and a length"],
+    );
+}
+
+#[test]
+fn elements_given_as_a_list_are_told_to_go_without_brackets() {
+    refuses(
+        "a = box([1, 2, 3])",
+        &[
+            "`x` of `box` needs a length, got the list [1, 2, 3]",
+            "without the brackets: `box(1, 2, 3)`",
+        ],
+    );
+    refuses("a = cylinder([5mm], h = 2)", &["without the brackets: `cylinder(5mm)`"]);
+    refuses("a = box([1, 2])", &["missing `to` in the call of `box`"]);
+}
+
+#[test]
+fn sizes_beyond_reach_name_the_range() {
+    refuses(
+        "a = box(1e300, 1, 1)",
+        &[
+            "out-of-range: `x` holds 1e300mm; lengths and coordinates lie between -1e12mm and 1e12mm",
+        ],
+    );
+    refuses("a = polygon([[0, 0], [-1e300, 0], [0, 1]])", &["`points` holds -1e300mm"]);
+    refuses("a = box(1, 1, 1).scale(1e9).scale(1e9)", &["its map holds numbers beyond 1e12"]);
+    refuses("a = sphere(1, sides = 1e11)", &["limit: `sides` is at most 100000, got 100000000000"]);
+    refuses(
+        "a = sphere(1, sides = 1e30)",
+        &["`sides` of `sphere` is at most 9007199254740992, got 1e30"],
+    );
+}
+
+#[test]
+fn a_file_sets_the_seed_of_its_noise() {
+    holds(
+        "set seed = 3\nassert noise(0.3) == noise(0.3, seed = 3) and noise(0.3) != noise(0.3, seed = 0)",
+    );
+    holds("assert noise(0.3) == noise(0.3, seed = 0)");
+    holds("set seed = n + 1\nn = 2\nassert map([0.3], noise) == [noise(0.3, seed = 3)]");
+    refuses(
+        "set seed = floor(noise(0.5))\na = noise(0.5)",
+        &["the seed of this file needs itself"],
+    );
+    refuses("set seed = 0.5", &["needs a whole number, 0 or more, got `0.5`"]);
+}
+
+#[test]
 fn parameters_are_checked() {
     let source = "param width: Length = 60mm in 20mm..120mm step 1mm\nparam style = \"lip\" in [\"lip\", \"flat\"]\npart p = box(width, 1, 1)";
     let with =
