@@ -16,3 +16,4 @@ mod readme;
 mod regressions;
 mod scad;
 mod sources;
+mod stretch;
