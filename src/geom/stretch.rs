@@ -69,10 +69,13 @@ impl Stretch {
 /// The largest singular value: the root of the largest eigenvalue of the map after its transpose, found with
 /// Jacobi's rotations, which are exact to rounding also where eigenvalues are equal.
 fn largest(linear: DMat3) -> f64 {
+    if !linear.is_finite() {
+        return f64::NAN;
+    }
     let entries = linear.to_cols_array();
     let size = entries.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    if size == 0.0 || !size.is_finite() {
-        return size;
+    if size == 0.0 {
+        return 0.0;
     }
     let unit = DMat3::from_cols_array(&entries.map(|x| x / size));
     let mut square = (unit.transpose() * unit).to_cols_array_2d();

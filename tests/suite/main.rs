@@ -1,5 +1,6 @@
 //! One test binary for everything that is tested from outside.
 
+mod broken;
 mod command;
 mod errors;
 mod eval;
