@@ -1,6 +1,6 @@
 //! How much a map makes the longest of lengths longer.
 
-use glam::DMat3;
+use glam::{DMat2, DMat3, DVec3};
 
 /// By how much a way of placements stretches at most: the largest singular value of its linear part.
 ///
@@ -49,6 +49,12 @@ impl Stretch {
     /// ```
     pub fn of(linear: DMat3) -> Stretch {
         if linear == DMat3::IDENTITY { Stretch::ONE } else { Stretch::by(largest(linear)) }
+    }
+
+    /// The stretch of a linear map of a plane.
+    pub fn of_plane(linear: DMat2) -> Stretch {
+        let [x, y] = [linear.x_axis, linear.y_axis].map(|column| column.extend(0.0));
+        Stretch::of(DMat3::from_cols(x, y, DVec3::ZERO))
     }
 
     /// One stretch after another: at least what both together do.
@@ -106,7 +112,7 @@ fn rotate(m: &mut [[f64; 3]; 3], p: usize, q: usize) {
 
 #[cfg(test)]
 mod tests {
-    use glam::{DVec3, dvec3};
+    use glam::dvec3;
 
     use super::*;
     use crate::geom::trig::{cos_deg, sin_deg};

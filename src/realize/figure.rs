@@ -57,7 +57,7 @@ impl Coded for ProfileError {
                 Code::SelfCrossing
             }
             ProfileError::Font { .. } | ProfileError::Glyph { .. } => Code::BadFile,
-            ProfileError::LongText { .. } => Code::Limit,
+            ProfileError::LongText { .. } | ProfileError::FineCurve { .. } => Code::Limit,
             ProfileError::Sides { sides } if *sides > profile::MOST_SIDES => Code::Limit,
             _ => Code::Degenerate,
         }

@@ -376,6 +376,25 @@ fn large_stl(n: u32) -> Vec<u8> {
 }
 
 #[test]
+fn triangles_of_a_large_stl_may_come_in_any_order() {
+    let ordered = large_stl(110);
+    let mut mixed = ordered[..84].to_vec();
+    let records: Vec<&[u8]> = ordered[84..].chunks_exact(50).collect();
+    let places = (0..records.len()).map(|i| i * 7919 % records.len());
+    places.for_each(|place| mixed.extend(records[place]));
+    let folder = folder(&[("m.kata", "part a = import(\"a.stl\")\npart b = import(\"b.stl\")")]);
+    fs::write(folder.path().join("a.stl"), ordered).expect("writable");
+    fs::write(folder.path().join("b.stl"), mixed).expect("writable");
+    let output = run(folder.path(), &["measure", "m.kata", "--json"]);
+    assert_eq!(code(&output), 0, "{}", err(&output));
+    let parts = &serde_json::from_slice::<Value>(&output.stdout).expect("JSON")["parts"];
+    for key in ["volume", "area", "bbox", "triangles", "euler", "shells"] {
+        assert_eq!(parts["a"][key], parts["b"][key], "{key}");
+    }
+    assert_eq!(parts["a"]["volume"], 110f64.powi(3));
+}
+
+#[test]
 #[ignore = "needs seconds and gigabytes in a debug build; .ci/run runs it in release"]
 fn a_200_mb_stl_is_read() {
     let folder = folder(&[("m.kata", "import(\"large.stl\")")]);
