@@ -89,7 +89,7 @@ fn rotation(random: &mut Random) -> DMat3 {
 
 /// Rotations about a scale from 0.05 to 10, in half of the cases one that differs by direction.
 fn placement(random: &mut Random) -> Placement {
-    let mut size = || 0.05 * f64::powf(200.0, random.unit());
+    let mut size = || 0.05 * libm::pow(200.0, random.unit());
     let mut sizes = DVec3::new(size(), size(), size());
     if random.below(2) == 0 {
         sizes = DVec3::splat(sizes.x);
