@@ -1,5 +1,7 @@
 //! How much a map makes the longest of lengths longer.
 
+use std::f64::consts::SQRT_2;
+
 use glam::{DMat2, DMat3, DVec3};
 
 /// By how much a way of placements stretches at most: the largest singular value of its linear part.
@@ -8,6 +10,9 @@ use glam::{DMat2, DMat3, DVec3};
 /// stretches by exactly one. Compared, ordered and hashed by its bits.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct Stretch(u64);
+
+/// Bits of a fraction.
+const FRACTION: u32 = 52;
 
 /// Bits of a fraction that are rounded away.
 const ROUNDED: u32 = 20;
@@ -64,6 +69,20 @@ impl Stretch {
             (this, Stretch::ONE) => this,
             (this, other) => Stretch::by(this.factor() * other.factor()),
         }
+    }
+
+    /// The least power of the fourth root of 2 that is not below this: few of them stand for all.
+    ///
+    /// ```
+    /// use katachi::geom::Stretch;
+    /// assert_eq!(Stretch::by(3.9).rounded_up().factor(), 4.0);
+    /// assert_eq!(Stretch::ONE.rounded_up(), Stretch::ONE);
+    /// ```
+    pub fn rounded_up(self) -> Stretch {
+        const STEPS: [f64; 5] = [1.0, 1.189_207_115_002_721, SQRT_2, 1.681_792_830_507_429, 2.0];
+        let whole = f64::from_bits(self.0 >> FRACTION << FRACTION);
+        let steps = STEPS.map(|step| Stretch::by(whole * step));
+        steps.into_iter().find(|&step| step >= self).unwrap_or(self)
     }
 
     /// The factor.
@@ -145,6 +164,16 @@ mod tests {
                 assert_eq!(Stretch::of(bent), Stretch::by(factor), "{factor} {sizes}");
                 assert_eq!(Stretch::of(scale), Stretch::by(factor));
             }
+        }
+    }
+
+    #[test]
+    fn rounding_up_is_done_once() {
+        for i in -300..300 {
+            let stretch = Stretch::by(libm::pow(1.037, f64::from(i)));
+            let rounded = stretch.rounded_up();
+            assert!(rounded >= stretch && rounded.factor() < 1.19 * stretch.factor());
+            assert_eq!(rounded.rounded_up(), rounded);
         }
     }
 

@@ -322,4 +322,26 @@ mod tests {
         let solid = add(&mut graph, Node::Extrude { profile, height: 1.0, twist: 0.0, scale });
         assert_eq!(stretches(&graph, solid, circle), [1.5]);
     }
+
+    /// Two copies of different size in every step, and no two steps alike.
+    #[test]
+    fn growth_through_scales_stays_bounded() {
+        let mut graph = ShapeGraph::default();
+        let ball = add(&mut graph, Node::Sphere { r: 1.0, sides: None });
+        let disc = add(&mut graph, Node::Ellipse { radii: glam::DVec2::ONE, sides: None });
+        let makers: [(ShapeId, fn(Arc<[ShapeId]>) -> Node); 3] =
+            [(ball, Node::Union), (ball, Node::Hull), (disc, Node::Union)];
+        for (mut shape, make) in makers {
+            for i in 0..30 {
+                let sizes = [0.9 + 0.001 * f64::from(i), 1.0 + 0.0017 * f64::from(i)];
+                let copies = sizes.map(|size| scaled(&mut graph, shape, DVec3::splat(size)));
+                shape = add(&mut graph, make(Arc::new(copies)));
+            }
+            let mut structure = Structure::default();
+            structure.extend(&graph);
+            let waves = structure.plan(&graph, [as_is(shape)], |_| false);
+            let units = waves.iter().flatten().count();
+            assert!(units < 100_000, "{units}");
+        }
+    }
 }

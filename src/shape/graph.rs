@@ -13,7 +13,7 @@ use crate::base::Span;
 #[derive(Clone, Copy, Debug)]
 struct Facts {
     kind: Kind,
-    curved: bool,
+    curves: u32,
     level: bool,
 }
 
@@ -53,7 +53,7 @@ impl ShapeGraph {
         }
         let facts = Facts {
             kind: self.kind_of(&node),
-            curved: stretched::curved(&node, |child| self.is_curved(child)),
+            curves: stretched::curves(&node, |child| self.curves(child)),
             level: stretched::level(&node, |child| self.is_level(child)),
         };
         let id = ShapeId(self.nodes.len() as u32);
@@ -79,9 +79,9 @@ impl ShapeGraph {
         self.facts[id.0 as usize].kind
     }
 
-    /// Whether the tolerance decides how it is made: a curve is somewhere in it.
-    pub fn is_curved(&self, id: ShapeId) -> bool {
-        self.facts[id.0 as usize].curved
+    /// How many things made with the tolerance are in it.
+    pub(super) fn curves(&self, id: ShapeId) -> u32 {
+        self.facts[id.0 as usize].curves
     }
 
     /// Whether nothing in it is taken out of planes parallel to xy.

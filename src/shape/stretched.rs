@@ -8,13 +8,19 @@ use super::{
 };
 use crate::geom::{Placement, Stretch};
 
+/// A shape with more curves than this, each counted as often as it stands in it, is made for few stretches: the
+/// next greater of a row. A graph shares nodes, and a shape that holds two scaled copies of one that holds two
+/// scaled copies, and so on, would have its leaves made for too many.
+const MOST_CURVES: u32 = 1 << 8;
+
 /// A shape and how much it is stretched on its way to the output: its curves are made with the output's
 /// tolerance divided by that.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct Stretched {
     /// The shape.
     pub id: ShapeId,
-    /// The stretch; one where the shape has no curves, so that it is made once for all.
+    /// The stretch; one where the shape has no curves, so that it is made once for all, and rounded up where it
+    /// has hundreds.
     pub stretch: Stretch,
 }
 
@@ -30,7 +36,17 @@ impl ShapeGraph {
     /// assert_eq!(graph.stretched(rock, Stretch::by(2.0)).stretch, Stretch::ONE);
     /// ```
     pub fn stretched(&self, id: ShapeId, stretch: Stretch) -> Stretched {
-        Stretched { id, stretch: if self.is_curved(id) { stretch } else { Stretch::ONE } }
+        let stretch = match self.curves(id) {
+            0 => Stretch::ONE,
+            1..=MOST_CURVES => stretch,
+            _ => stretch.rounded_up(),
+        };
+        Stretched { id, stretch }
+    }
+
+    /// Whether the tolerance decides how a shape is made: a curve is somewhere in it.
+    pub fn is_curved(&self, id: ShapeId) -> bool {
+        self.curves(id) > 0
     }
 
     /// A child of a shape, with what the shape itself stretches it by.
@@ -53,23 +69,22 @@ impl ShapeGraph {
     }
 }
 
-/// Whether a node is made with the tolerance, given whether its children are.
-pub(super) fn curved(node: &Node, child: impl Fn(ShapeId) -> bool) -> bool {
-    match node {
+/// How often something that is made with the tolerance stands in a node, given how often in its children.
+pub(super) fn curves(node: &Node, child: impl Fn(ShapeId) -> u32) -> u32 {
+    let own = match node {
         Node::Cone { sides, .. }
         | Node::Sphere { sides, .. }
         | Node::Torus { sides, .. }
-        | Node::Ellipse { sides, .. } => sides.is_none(),
-        Node::Extrude { profile, twist, scale, .. } => {
-            *twist != 0.0 || scale.x != scale.y || child(*profile)
-        }
-        Node::Revolve { profile, sides, .. } => sides.is_none() || child(*profile),
+        | Node::Ellipse { sides, .. }
+        | Node::Revolve { sides, .. } => sides.is_none(),
+        Node::Extrude { twist, scale, .. } => *twist != 0.0 || scale.x != scale.y,
         Node::Text(_)
         | Node::ImportProfile { .. }
         | Node::OffsetProfile { .. }
         | Node::RoundProfile { .. } => true,
-        node => node.children().iter().any(|&id| child(id)),
-    }
+        _ => false,
+    };
+    node.children().iter().map(|&id| child(id)).fold(u32::from(own), u32::saturating_add)
 }
 
 /// Whether a profile stays parallel to the xy plane, given whether its children do.
