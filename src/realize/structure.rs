@@ -329,7 +329,8 @@ mod tests {
         let mut graph = ShapeGraph::default();
         let ball = add(&mut graph, Node::Sphere { r: 1.0, sides: None });
         let disc = add(&mut graph, Node::Ellipse { radii: glam::DVec2::ONE, sides: None });
-        let makers: [(ShapeId, fn(Arc<[ShapeId]>) -> Node); 3] =
+        type Make = fn(Arc<[ShapeId]>) -> Node;
+        let makers: [(ShapeId, Make); 3] =
             [(ball, Node::Union), (ball, Node::Hull), (disc, Node::Union)];
         for (mut shape, make) in makers {
             for i in 0..30 {
