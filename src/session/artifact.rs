@@ -10,7 +10,7 @@ use crate::{
         scad,
     },
     realize::Realizer,
-    shape::{ShapeGraph, ShapeId},
+    shape::{ShapeGraph, ShapeId, Stretched},
 };
 
 /// What a file is written as.
@@ -159,12 +159,12 @@ struct Shapes<'a> {
 }
 
 impl scad::Realized for Shapes<'_> {
-    fn mesh(&self, shape: ShapeId) -> Option<PolyMesh> {
-        Some(self.realizer.solid(self.graph, shape).ok()?.polyhedron.mesh().clone())
+    fn mesh(&self, shape: Stretched) -> Option<PolyMesh> {
+        Some(self.realizer.solid_under(self.graph, shape).ok()?.polyhedron.mesh().clone())
     }
 
-    fn region(&self, shape: ShapeId) -> Option<Region> {
-        Some(self.realizer.figure(self.graph, shape).ok()?.region.clone())
+    fn region(&self, shape: Stretched) -> Option<Region> {
+        Some(self.realizer.figure_under(self.graph, shape).ok()?.region.clone())
     }
 }
 

@@ -10,8 +10,8 @@ use super::{
 use crate::{
     base::{Code, Diagnostic, Phase, watch::during},
     eval::{
-        Evaluator, ExportInfo, InstanceId, Limits, OutputInfo, ParamInfo, TestInfo, TestOutcome,
-        Write, nearest,
+        Evaluator, ExportInfo, ExportPart, InstanceId, Limits, OutputInfo, ParamInfo, TestInfo,
+        TestOutcome, Write, nearest,
     },
     realize,
     shape::{Geometry, Kind, ShapeId},
@@ -109,22 +109,26 @@ impl<'s> Model<'s> {
     /// With names: the exports that write nothing else, and the named outputs that none of these
     /// writes. A format given here writes the outputs alone, each as `<name>.<extension>`. What
     /// [`check`](Model::check) finds is among the diagnostics.
+    ///
+    /// An export writes the outputs that it names, alone or as fields of its record. Where it has an
+    /// expression, it writes the output that is this very shape, if there is just one among those asked
+    /// for.
     pub fn artifacts(
         &mut self,
         names: &[String],
         format: Option<Format>,
         diagnostics: &mut Vec<Diagnostic>,
     ) -> Vec<Artifact> {
-        let parts = self.parts(names, diagnostics);
+        let mut parts = self.parts(names, diagnostics);
         let mut artifacts = vec![];
         if format.is_none() {
-            artifacts = self.exports(names, &parts, diagnostics);
+            let written: Vec<String>;
+            (artifacts, written) = self.exports(names, &parts, diagnostics);
+            parts.retain(|part| !written.contains(&part.name));
         }
         diagnostics.extend(self.check(names));
-        let exported: Vec<ShapeId> =
-            artifacts.iter().flat_map(|a| a.parts.iter().map(|part| part.shape)).collect();
         let format = format.unwrap_or(Format::STL);
-        for part in parts.into_iter().filter(|part| !exported.contains(&part.shape)) {
+        for part in parts {
             let file = format!("{}.{}", part.name, format.extension());
             artifacts.push(Artifact { file, format, parts: vec![part] });
         }
@@ -133,36 +137,41 @@ impl<'s> Model<'s> {
         artifacts
     }
 
+    /// The files of the exports, and the names of the outputs that these write.
     fn exports(
         &mut self,
         names: &[String],
-        parts: &[Part],
+        outputs: &[Part],
         diagnostics: &mut Vec<Diagnostic>,
-    ) -> Vec<Artifact> {
-        let Some(instance) = self.instance else { return vec![] };
-        let mut artifacts = vec![];
+    ) -> (Vec<Artifact>, Vec<String>) {
+        let (mut artifacts, mut written) = (vec![], vec![]);
+        let Some(instance) = self.instance else { return (artifacts, written) };
         for (index, export) in self.evaluator.exports(instance).into_iter().enumerate() {
-            let shapes = during(self.session.watch, Phase::Eval, || {
+            let parts = during(self.session.watch, Phase::Eval, || {
                 self.evaluator.export_shapes(instance, index)
             });
             diagnostics.extend(self.evaluator.take_diagnostics());
-            let Ok(shapes) = shapes else { continue };
-            let chosen = |(_, shape): &(String, ShapeId)| parts.iter().any(|p| p.shape == *shape);
-            if !names.is_empty() && !shapes.iter().all(chosen) {
+            let Ok(parts) = parts else { continue };
+            let found: Vec<Option<&Part>> = parts.iter().map(|p| output_of(p, outputs)).collect();
+            if !names.is_empty() && found.contains(&None) {
                 continue;
             }
-            match self.export(&export, shapes) {
-                Ok(found) => artifacts.extend(found),
+            match self.export(&export, parts) {
+                Ok(files) if !files.is_empty() => {
+                    artifacts.extend(files);
+                    written.extend(found.into_iter().flatten().map(|part| part.name.clone()));
+                }
+                Ok(_) => {}
                 Err(diagnostic) => diagnostics.push(diagnostic),
             }
         }
-        artifacts
+        (artifacts, written)
     }
 
     fn export(
         &self,
         export: &ExportInfo,
-        shapes: Vec<(String, ShapeId)>,
+        parts: Vec<ExportPart>,
     ) -> Result<Vec<Artifact>, Diagnostic> {
         let Some(file) = &export.file else { return Ok(vec![]) };
         let format = Format::of_file(file).ok_or_else(|| {
@@ -171,8 +180,10 @@ impl<'s> Model<'s> {
                 .label(export.span, "")
                 .help(format!("end the name with one of {}", Format::extensions()))
         })?;
-        let part = |(name, shape)| self.solid_part(Part { name, shape, span: export.span });
-        let parts = shapes.into_iter().map(part).collect::<Result<Vec<_>, _>>()?;
+        let part = |ExportPart { name, shape, .. }| {
+            self.solid_part(Part { name, shape, span: export.span })
+        };
+        let parts = parts.into_iter().map(part).collect::<Result<Vec<_>, _>>()?;
         Ok(Artifact::split(file, format, parts))
     }
 
@@ -266,4 +277,14 @@ impl<'s> Model<'s> {
     fn warnings(&self, shape: ShapeId) -> Vec<Diagnostic> {
         realize::warnings(&self.session.realizer, self.evaluator.graph(), shape)
     }
+}
+
+/// The output that an export writes with one of its parts: the one it names, else the only one of that shape.
+fn output_of<'a>(part: &ExportPart, outputs: &'a [Part]) -> Option<&'a Part> {
+    if let Some(name) = &part.output {
+        return outputs.iter().find(|output| *output.name == **name);
+    }
+    let mut same = outputs.iter().filter(|output| output.shape == part.shape);
+    let first = same.next();
+    first.filter(|_| same.next().is_none())
 }

@@ -1,5 +1,6 @@
 //! One test binary for everything that is tested from outside.
 
+mod broken;
 mod command;
 mod errors;
 mod eval;
@@ -16,3 +17,4 @@ mod readme;
 mod regressions;
 mod scad;
 mod sources;
+mod stretch;
