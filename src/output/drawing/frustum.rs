@@ -11,6 +11,7 @@ use rustc_hash::FxHashMap;
 
 use super::{
     Camera, Window,
+    merge::Piece,
     scene::{Scene, Stroke},
 };
 use crate::geom::PolyMesh;
@@ -152,6 +153,16 @@ impl Window {
             }
         }
         (from < to).then_some((from, to))
+    }
+
+    /// Cuts a piece off at the border; false if nothing is left of it.
+    pub(super) fn cut(&self, piece: &mut Piece) -> bool {
+        let Some((from, to)) = self.of_segment(piece.from, piece.to) else { return false };
+        let [p, q] = [piece.from, piece.to];
+        // An end within stays as it is, to the bit, so that lines go on into each other.
+        piece.from = if from > 0.0 { p.lerp(q, from) } else { p };
+        piece.to = if to < 1.0 { p.lerp(q, to) } else { q };
+        true
     }
 
     /// The parts of a curve within the window, as parameters in 0..1.

@@ -27,9 +27,11 @@ mod convex;
 mod count;
 #[allow(clippy::module_inception, reason = "the noun is the file's")]
 mod drawing;
+mod envelope;
 mod field;
 mod fit;
 mod frustum;
+mod horizon;
 mod join;
 mod lattice;
 mod links;
@@ -43,6 +45,7 @@ mod strips;
 
 pub use camera::{Camera, CameraError, View, Window};
 pub use drawing::{Class, Drawing, Line, Path, Segment};
+pub use horizon::{HeightField, HorizonError, horizon_lines};
 pub use scene::{Body, Hidden, Kind, Method, Options, Scene, Stroke};
 
 use rayon::prelude::*;
@@ -212,11 +215,7 @@ impl Sheet {
 
     /// Cuts all lines off at the border of a window.
     fn cut(&mut self, window: &Window) {
-        self.straight.retain_mut(|p| {
-            let Some((from, to)) = window.of_segment(p.from, p.to) else { return false };
-            (p.from, p.to) = (p.from.lerp(p.to, from), p.from.lerp(p.to, to));
-            true
-        });
+        self.straight.retain_mut(|piece| window.cut(piece));
         for arc in std::mem::take(&mut self.arcs) {
             let at = |t: f64| arc.from + (arc.to - arc.from) * t;
             let parts = window.of_curve(|t| arc.ellipse.at(at(t)));

@@ -120,7 +120,8 @@ fn threads_do_not_change_the_drawing() {
 fn mixture(scene: u64, tolerance: Tolerance) -> (Polyhedron, Camera) {
     let mut state = scene.wrapping_mul(7919).wrapping_add(13);
     let mut next = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1u64 << 53) as f64
     };
     let mut part = || {
