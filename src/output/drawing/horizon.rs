@@ -88,6 +88,12 @@ impl HeightField {
         }
     }
 
+    /// The points of the surface in rows of one x.
+    pub(super) fn rows(&self) -> Vec<Vec<DVec3>> {
+        let row = |i| (0..self.y.len()).map(|j| self.point([i, j])).collect();
+        (0..self.x.len()).map(row).collect()
+    }
+
     fn point(&self, [i, j]: [usize; 2]) -> DVec3 {
         dvec3(self.x[i], self.y[j], self.z[i * self.y.len() + j])
     }
