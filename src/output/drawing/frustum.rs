@@ -34,11 +34,21 @@ impl Visible<'_> {
     }
 }
 
+/// Coordinates up to this, mm, can be squared and multiplied on; what reaches farther is left out.
+const FARTHEST: f64 = 1e60;
+
+fn is_near(p: &DVec3) -> bool {
+    p.is_finite() && p.abs().max_element() <= FARTHEST
+}
+
 /// The bodies and strokes of a scene as far as they are before the eye.
 pub fn before_eye<'a>(scene: &Scene<'a>, camera: &Camera) -> (Vec<Visible<'a>>, Vec<Stroke>) {
     let mut bodies = vec![];
     for body in &scene.bodies {
         let (mesh, id, cut) = (body.mesh, body.id, body.mesh.points.len() as u32);
+        if !mesh.points.iter().all(is_near) {
+            continue;
+        }
         let behind = mesh.points.iter().filter(|p| camera.ahead(**p) < 0.0).count();
         if behind == 0 {
             bodies.push(Visible { mesh: Cow::Borrowed(mesh), id, cut });
@@ -47,7 +57,8 @@ pub fn before_eye<'a>(scene: &Scene<'a>, camera: &Camera) -> (Vec<Visible<'a>>, 
             bodies.push(Visible { mesh, id, cut });
         }
     }
-    let strokes = scene.strokes.iter().flat_map(|s| cut_stroke(s, camera)).collect();
+    let near = scene.strokes.iter().filter(|s| s.points.iter().all(is_near));
+    let strokes = near.flat_map(|s| cut_stroke(s, camera)).collect();
     (bodies, strokes)
 }
 

@@ -93,7 +93,8 @@ const COINCIDENT: f64 = 1e-8;
 
 /// The lines of a scene that an eye sees, and those it would see but for what is in front.
 ///
-/// Never fails: what is behind the eye or outside the window is left out, and a scene without lines gives a
+/// Never fails: what is behind the eye or outside the window is left out, as are bodies and strokes with points that
+/// are not finite or farther than 1e60 mm; a scene without lines gives a
 /// drawing without lines. The same input gives the same drawing whatever the number of threads.
 pub fn visible_lines(scene: &Scene, camera: &Camera, options: &Options) -> Drawing {
     let model = Model::new(scene, camera, options);

@@ -19,7 +19,7 @@ use super::{
     model::{Edge, Facet, Model, Outline},
     scene::{Kind, Options},
 };
-use crate::geom::{PolyMesh, Surface};
+use crate::geom::{PolyMesh, Surface, Tolerance, trig::cos_deg};
 
 /// Facets stand for their surface when they are within the tolerance, and this factor of it where set operations
 /// cut them across.
@@ -58,6 +58,8 @@ struct Smooth<'a> {
     mesh: &'a PolyMesh,
     base: u32,
     id: u32,
+    /// Cosine of the angle from which on facets without a closed form meet in an edge.
+    crease: f64,
     patches: Vec<Patch>,
     /// The patch of each face.
     patch: Vec<u32>,
@@ -76,20 +78,24 @@ struct Smooth<'a> {
     outline_faces: Vec<u32>,
 }
 
-/// Adds a body if it has round faces; false if all its facets stand for themselves.
+/// Adds a body if it has round faces; false if all its facets stand for themselves, as those of an open surface do.
 pub fn add_body(model: &mut Model, body: &Visible, base: u32, options: &Options) -> bool {
     let mesh = &*body.mesh;
-    let round = faithful_origins(mesh, options.tolerance.mm() * FAITHFUL);
+    let round = faithful_origins(mesh, options.tolerance);
     if !round.contains(&true) {
         return false;
     }
     let links = links(mesh);
+    if links.iter().any(|l| l.right == NONE && !body.is_cut(l.a, l.b)) {
+        return false;
+    }
     let mut smooth = Smooth {
         model,
         body,
         mesh,
         base,
         id: body.id,
+        crease: cos_deg(options.crease),
         patches: vec![],
         patch: vec![],
         front: vec![],
@@ -111,7 +117,8 @@ pub fn add_body(model: &mut Model, body: &Visible, base: u32, options: &Options)
 }
 
 /// Which origins are round surfaces that their facets keep to.
-fn faithful_origins(mesh: &PolyMesh, tolerance: f64) -> Vec<bool> {
+pub fn faithful_origins(mesh: &PolyMesh, tolerance: Tolerance) -> Vec<bool> {
+    let most = tolerance.mm() * FAITHFUL;
     let flat = |s: &Surface| matches!(s, Surface::Plane | Surface::Facets);
     let mut round: Vec<bool> = mesh.origins().iter().map(|o| !flat(&o.surface)).collect();
     if !round.contains(&true) {
@@ -122,7 +129,7 @@ fn faithful_origins(mesh: &PolyMesh, tolerance: f64) -> Vec<bool> {
         if round[origin] {
             let field = Field::Round(mesh.origins()[origin].surface);
             let [p, q] = [a, b].map(|i| mesh.points[i as usize]);
-            round[origin] = field.slope((p + q) / 2.0).0.abs() <= tolerance;
+            round[origin] = field.slope((p + q) / 2.0).0.abs() <= most;
         }
     });
     round
@@ -332,7 +339,7 @@ impl Smooth<'_> {
         let drawn = if link.right == NONE {
             !self.body.is_cut(link.a, link.b)
         } else {
-            !self.is_tangent(patches, ends)
+            self.is_sharp(link, patches, ends)
         };
         for i in 0..nodes.len() {
             let (from, l, r) = nodes[i];
@@ -343,15 +350,21 @@ impl Smooth<'_> {
         }
     }
 
-    /// Whether two patches meet without an angle.
-    fn is_tangent(&self, patches: [u32; 2], ends: [u32; 2]) -> bool {
-        ends.iter().all(|&p| {
+    /// Whether two patches meet at an angle that is drawn.
+    fn is_sharp(&self, link: &Link, patches: [u32; 2], ends: [u32; 2]) -> bool {
+        let faces = [link.left, link.right].map(|f| self.mesh.face(f as usize));
+        let facets = faces.iter().any(|f| f.origin().surface == Surface::Facets);
+        ends.iter().any(|&p| {
             let p = self.model.space[p as usize];
             let [m, n] = patches.map(|patch| {
                 let Patch { field, outward } = self.patches[patch as usize];
                 field.slope(p).1 * outward
             });
-            m.dot(n) > 0.0 && m.cross(n).length() < TANGENT
+            if facets {
+                m.dot(n) < self.crease
+            } else {
+                m.dot(n) <= 0.0 || m.cross(n).length() > TANGENT
+            }
         })
     }
 

@@ -166,3 +166,39 @@ fn round_solids_look_the_same_from_coarse_and_fine_meshes() {
     }
     assert!(apart <= 6, "{apart} drawings depend on their facets");
 }
+
+#[test]
+fn few_sides_are_edges() {
+    let prism = [cone(10.0, 10.0, 30.0, 6)];
+    let front = drawn(&prism, &Camera::view(View::Front), Method::Auto);
+    // Seen across a side: four upright edges, of which two pairs coincide with those behind, and the ends.
+    assert!(near(front.visible, 4.0 * 30.0 + 2.0 * 20.0, 1e-9), "{}", front.visible);
+    let ball = drawn(&[sphere(10.0, 8)], &Camera::view(View::Front), Method::Auto);
+    assert!(ball.segments > 12, "{} segments", ball.segments);
+}
+
+#[test]
+fn what_is_not_finite_does_not_stop_the_drawing() {
+    let mut mesh = cube().into_mesh();
+    mesh.points[3] = dvec3(f64::NAN, 0.0, 0.0);
+    mesh.points[5] = dvec3(1e300, f64::INFINITY, -1e300);
+    for method in METHODS {
+        for camera in [Camera::view(View::Iso), camera("city")] {
+            let options = Options { method, ..Options::default() };
+            let found = visible_lines(&Scene::of([&mesh]), &camera, &options);
+            assert_eq!(found, Drawing::default());
+        }
+    }
+}
+
+#[test]
+fn many_layers_do_not_fill_the_grid() {
+    let layer = |i: i32| {
+        let y = f64::from(i);
+        cuboid(dvec3(-50.0, y, -50.0), dvec3(50.0, y + 0.5, 50.0))
+    };
+    let solids: Vec<Polyhedron> = (0..400).map(layer).collect();
+    let camera = Camera::parallel(dvec3(0.001, -1.0, 0.001)).expect("a direction");
+    let found = drawn(&solids, &camera, Method::Count);
+    assert!(found.visible > 400.0 && found.hidden > 0.0);
+}
