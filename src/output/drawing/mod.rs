@@ -64,6 +64,7 @@ mod links;
 mod meet;
 mod merge;
 mod model;
+mod patches;
 mod scene;
 mod smooth;
 mod span;

@@ -11,6 +11,7 @@ use super::{
     frustum::{Visible, before_eye},
     lattice::{Lattice, Plane},
     links::{self, Link, NONE, links},
+    patches::faithful_origins,
     scene::{Kind, Options, Scene, Stroke},
     smooth,
 };
@@ -246,7 +247,7 @@ impl Model {
         let open = links.iter().any(|l| l.right == NONE && !body.is_cut(l.a, l.b));
         let faces = self.add_facets(mesh, base, open);
         let crease = cos_deg(options.crease);
-        let round = smooth::faithful_origins(mesh, options.tolerance);
+        let round = faithful_origins(mesh, options.tolerance);
         for link in &links {
             let kind = kind(mesh, link, &faces, &round, crease);
             if let Some(kind) = kind.filter(|_| !body.is_cut(link.a, link.b)) {
