@@ -64,7 +64,7 @@
 //! | [`input`] | readers of meshes, drawings and values |
 //! | [`kernel`] | exact polyhedra ([`kernel::brep`]) and plane figures ([`kernel::profile`]) |
 //! | [`realize`] | graph to solids |
-//! | [`output`] | writers of mesh files and OpenSCAD source |
+//! | [`output`] | writers of mesh files and OpenSCAD source; visible and hidden lines ([`output::drawing`]) |
 //! | [`session`] | the one road through it all |
 //! | [`app`] | the command line, the only room that touches files, clock and terminal |
 //!
@@ -73,6 +73,7 @@
 //! | paper | where |
 //! |---|---|
 //! | S. Nagashima, *A spatial inclusion test for polyhedra using a spherical projection*, 1986 | [`geom::spherical_projection`], and the seeds of [`kernel::brep::boolean`] |
+//! | T. Nishita, hidden lines and half-tones of three-dimensional scenes, 1972 (METHODS, section 3) | [`output::drawing`] |
 
 pub mod app;
 pub mod base;

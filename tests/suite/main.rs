@@ -2,6 +2,7 @@
 
 mod broken;
 mod command;
+mod drawing;
 mod errors;
 mod eval;
 mod examples;
