@@ -54,6 +54,9 @@ pub(super) struct Hierarchy {
 /// Boxes in a leaf of the tree.
 const LEAF: usize = 4;
 
+/// So few boxes are not worth sorting: the tree is one leaf.
+const SMALL: usize = 12;
+
 impl Hierarchy {
     /// Sorts boxes into a tree; an item is known by its place in the list.
     pub fn new(boxes: impl Iterator<Item = Bounds>) -> Hierarchy {
@@ -64,7 +67,7 @@ impl Hierarchy {
             let range = &mut items[start..end];
             let bounds = range.iter().fold(Bounds::EMPTY, |all, item| all.with(item.0));
             nodes[at].bounds = bounds;
-            if range.len() <= LEAF {
+            if range.len() <= if at == 0 { SMALL } else { LEAF } {
                 (nodes[at].start, nodes[at].end) = (start as u32, end as u32);
                 continue;
             }

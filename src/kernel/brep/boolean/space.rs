@@ -25,6 +25,8 @@ struct Stored {
 struct Point {
     near: [f64; 3],
     planes: [u32; 3],
+    /// The point stored before it in the same cell of the grid, or [`NONE`].
+    before: u32,
 }
 
 /// How far `near` may be from the point, in steps: numerators and denominators are converted with a
@@ -46,9 +48,8 @@ pub(super) struct Space {
     points: Vec<Point>,
     lattice: FxHashMap<[i32; 3], u32>,
     meets: FxHashMap<[u32; 3], u32>,
-    /// Points of three planes by cell of a grid; a chain of points with the same cell.
+    /// The last point of three planes in each cell of a grid.
     cells: FxHashMap<[i32; 3], u32>,
-    chain: FxHashMap<u32, u32>,
     edges: FxHashMap<(u32, u32), [u32; 2]>,
 }
 
@@ -77,7 +78,7 @@ impl Space {
     pub fn add_lattice_point(&mut self, at: Int3) -> u32 {
         let points = &mut self.points;
         *self.lattice.entry(at.map(|c| c as i32)).or_insert_with(|| {
-            points.push(Point { near: at.map(|c| c as f64), planes: [NONE; 3] });
+            points.push(Point { near: at.map(|c| c as f64), planes: [NONE; 3], before: NONE });
             points.len() as u32 - 1
         })
     }
@@ -141,12 +142,12 @@ impl Space {
         for x in low[0]..=high[0] {
             for y in low[1]..=high[1] {
                 for z in low[2]..=high[2] {
-                    let mut next = self.cells.get(&[x, y, z]).copied();
-                    while let Some(point) = next {
-                        if same(point) {
-                            return Some(point);
+                    let mut next = self.cells.get(&[x, y, z]).copied().unwrap_or(NONE);
+                    while next != NONE {
+                        if same(next) {
+                            return Some(next);
                         }
-                        next = self.chain.get(&point).copied();
+                        next = self.points[next as usize].before;
                     }
                 }
             }
@@ -156,10 +157,8 @@ impl Space {
 
     fn store(&mut self, near: [f64; 3], planes: [u32; 3]) -> u32 {
         let point = self.points.len() as u32;
-        self.points.push(Point { near, planes });
-        if let Some(before) = self.cells.insert(near.map(cell), point) {
-            self.chain.insert(point, before);
-        }
+        let before = self.cells.insert(near.map(cell), point).unwrap_or(NONE);
+        self.points.push(Point { near, planes, before });
         point
     }
 
