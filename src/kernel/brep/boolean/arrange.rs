@@ -11,7 +11,7 @@ use super::{
     cells::Complex,
     facet::Facets,
     hierarchy::Hierarchy,
-    intersect::Trace,
+    intersect::{self, Trace},
     nesting,
     space::{NONE, Space, main_axis},
 };
@@ -24,7 +24,7 @@ struct Part {
     b: u32,
     /// The plane that cuts the plane of the arrangement in it.
     support: u32,
-    /// The leaf it comes from.
+    /// The operand it comes from.
     owner: u32,
     /// The facet on its left (1) or right (-1), when it is part of a facet's boundary.
     side: Option<(u32, i32)>,
@@ -35,7 +35,7 @@ struct Segment {
     a: u32,
     b: u32,
     support: u32,
-    /// The leaf that all parts come from, [`NONE`] for several.
+    /// The operand that all parts come from, [`NONE`] for several.
     owner: u32,
     /// Facets to its sides: a range of a list.
     sides: (u32, u32),
@@ -109,9 +109,47 @@ impl Graph {
     }
 }
 
+/// Cuts all facets into cells, given the pairs of those whose boxes touch. Patches are given each by
+/// a facet of its operand.
+pub(super) fn complex(
+    facets: &mut Facets,
+    pairs: &[(u32, u32)],
+    patches: &[u32],
+    space: &mut Space,
+    trusted: bool,
+) -> Complex {
+    let mut meetings = intersect::meetings(facets, pairs, space);
+    let mut complex = Complex::default();
+    let mut groups: Vec<(u32, u32)> = vec![];
+    let mut traces = &meetings.traces[..];
+    for facet in 0..facets.list().len() as u32 {
+        let count = traces.iter().take_while(|t| t.facet == facet).count();
+        traces = &traces[count..];
+        if count > 0 || meetings.grouped[facet as usize] {
+            groups.push((meetings.coplanar.find(facet), facet));
+        } else {
+            complex.add_whole(facet, facets);
+        }
+    }
+    groups.sort_unstable();
+    for group in groups.chunk_by(|a, b| a.0 == b.0) {
+        let members: Vec<u32> = group.iter().map(|g| g.1).collect();
+        let range = |facet: &u32| {
+            let start = meetings.traces.partition_point(|t| t.facet < *facet);
+            let end = meetings.traces.partition_point(|t| t.facet <= *facet);
+            &meetings.traces[start..end]
+        };
+        let traces: Vec<_> = members.iter().flat_map(range).copied().collect();
+        arrange(&members, &traces, facets, space, trusted, &mut complex);
+    }
+    complex.add_patches(patches.iter().copied());
+    complex.finish(space.point_count());
+    complex
+}
+
 /// Arranges a set of facets of one plane with the traces on them, and adds the covered cells to the
 /// complex.
-pub(super) fn arrange(
+fn arrange(
     group: &[u32],
     traces: &[Trace],
     facets: &mut Facets,
@@ -145,9 +183,9 @@ fn gather(
     let (mut parts, mut points) = (vec![], vec![]);
     for &facet in group {
         let (_, turned) = facets.plane(facet, space);
-        let owner = facets.list()[facet as usize].leaf;
-        for (a, b) in facets.edges(facet) {
-            let support = space.support(a, b, plane);
+        let owner = facets.list()[facet as usize].owner;
+        for (a, b, support) in facets.supported_edges(facet) {
+            let support = if support == NONE { space.support(a, b, plane) } else { support };
             let side = Some((facet, if turned == (a > b) { 1 } else { -1 }));
             parts.push(Part { a: a.min(b), b: a.max(b), support, owner, side });
         }
@@ -188,7 +226,7 @@ fn split(
     trusted: bool,
 ) -> Vec<(u32, u32)> {
     let mut splits = vec![];
-    let tree = Hierarchy::new(segments.iter().map(|s| space.bounds(s.a, s.b)));
+    let tree = Hierarchy::new(segments.iter().map(|s| space.bounds(s.a).with(space.bounds(s.b))));
     let mut pairs = vec![];
     tree.own_pairs(|s, t| {
         let owner = segments[s as usize].owner;
@@ -201,7 +239,7 @@ fn split(
         split_pair((s, first), (t, second), plane, space, &mut splits);
     }
     for &point in points {
-        tree.overlapping(&space.bounds(point, point), |s| {
+        tree.overlapping(&space.bounds(point), |s| {
             let segment = &segments[s as usize];
             if space.side(point, segment.support) == 0 && between(segment, point, space) {
                 splits.push((s, point));

@@ -10,11 +10,10 @@ use super::{
     classify::Sides,
     facet::Facets,
     frame::Plan,
-    hierarchy::Bounds,
-    lattice::Lattice,
     origins::{Key, Labels},
     outline::Outline,
-    patch::Patches,
+    patch::{Borders, Patches},
+    place::Places,
     space::{NONE, Space},
 };
 use crate::geom::PolyMesh;
@@ -22,8 +21,9 @@ use crate::geom::PolyMesh;
 /// What the result is assembled from.
 pub(super) struct Assembly<'a> {
     pub plan: &'a Plan,
-    pub lattice: &'a Lattice,
     pub patches: &'a Patches,
+    pub borders: &'a Borders,
+    pub places: &'a Places<'a>,
     pub facets: &'a Facets,
     pub space: &'a Space,
     pub complex: &'a Complex,
@@ -35,9 +35,8 @@ impl Assembly<'_> {
     pub fn mesh(&self) -> PolyMesh {
         let mut labels = Labels::new(self.plan, self.facets);
         let boundary = Boundary::of(self.complex, self.sides, &mut labels);
-        let borders = self.borders();
-        let outline = Outline::of(&boundary, &borders);
-        let dropped = outline.dropped((&boundary, &borders), self.complex, self.space);
+        let outline = Outline::of(&boundary, self.borders, self.space);
+        let dropped = outline.dropped((&boundary, self.borders), self.complex, self.space);
         let mut mesh = PolyMesh::default();
         let (mut loops, standing) = self.corners(&boundary, &outline, &dropped, &mut mesh);
         let carried = Carried::new(self, &boundary.up, &standing);
@@ -56,53 +55,6 @@ impl Assembly<'_> {
         mesh
     }
 
-    /// Whether each point borders on a patch.
-    fn borders(&self) -> Vec<bool> {
-        let mut borders = vec![false; self.space.point_count()];
-        if !self.patches.list.is_empty() {
-            for (border, &(leaf, corner)) in borders.iter_mut().zip(&self.facets.sources) {
-                *border = self.patches.leaves[leaf as usize].patch(corner).is_some();
-            }
-        }
-        borders
-    }
-
-    /// Where a point stands in the result. A corner of a leaf stands where the leaf's placement puts
-    /// it, untouched by the lattice.
-    fn place(&self, point: u32, levels: &FxHashMap<(usize, i64), f64>) -> DVec3 {
-        if let Some(&(leaf, corner)) = self.facets.sources.get(point as usize) {
-            let leaf = &self.plan.leaves[leaf as usize];
-            return leaf.full.point(leaf.solid.mesh().points[corner as usize]);
-        }
-        let near = self.space.near(point);
-        let mut place = self.lattice.place(near);
-        for axis in 0..3 {
-            if near[axis].fract() == 0.0
-                && let Some(&level) = levels.get(&(axis, near[axis] as i64))
-            {
-                place[axis] = level;
-            }
-        }
-        self.plan.frame.point(place)
-    }
-
-    /// Where the faces across an axis were before they were snapped: their new corners go there too,
-    /// so that they stay exactly flat.
-    fn levels(&self) -> FxHashMap<(usize, i64), f64> {
-        let mut levels = FxHashMap::default();
-        for (number, facet) in (0u32..).zip(self.facets.list()) {
-            let Bounds { min, max } = facet.bounds;
-            for axis in (0..3).filter(|&axis| min[axis] == max[axis]) {
-                let corner = self.facets.loops(number).next().map_or(0, |l| l[0]);
-                let (leaf, source) = self.facets.sources[corner as usize];
-                let leaf = &self.plan.leaves[leaf as usize];
-                let there = leaf.local.point(leaf.solid.mesh().points[source as usize]);
-                levels.entry((axis, i64::from(min[axis]))).or_insert(there[axis]);
-            }
-        }
-        levels
-    }
-
     /// Every loop as mesh points, and for every edge a number that both its sides share; and a mesh
     /// point for each point.
     fn corners(
@@ -115,7 +67,6 @@ impl Assembly<'_> {
         let mut standing = vec![NONE; self.space.point_count()];
         let mut numbers = vec![NONE; outline.vertex.len()];
         let mut loops = vec![];
-        let levels = self.levels();
         for (_, halves) in &outline.loops {
             let vertex = |half: u32| outline.vertex[half as usize] as usize;
             let kept: Vec<usize> =
@@ -128,7 +79,7 @@ impl Assembly<'_> {
                     *number = mesh.points.len() as u32;
                     let point = boundary.origin[half as usize];
                     standing[point as usize] = *number;
-                    mesh.points.push(self.place(point, &levels));
+                    mesh.points.push(self.places.of(point, self.space));
                 }
                 let next = kept[(k + 1) % kept.len()];
                 let last = halves[(next + halves.len() - 1) % halves.len()];

@@ -18,7 +18,7 @@ impl<'a> Carried<'a> {
     /// Finds the patches of the result. `up` says of each cell whether it is there and its outside
     /// is above, `standing` of each point at a border which mesh point it is.
     pub fn new(assembly: &'a Assembly<'a>, up: &[Option<bool>], standing: &[u32]) -> Carried<'a> {
-        let Assembly { plan, complex, patches, facets, .. } = *assembly;
+        let Assembly { plan, complex, patches, places, .. } = *assembly;
         let up = &up[complex.first_patch as usize..];
         let kept = patches.list.iter().zip(up).filter_map(|(patch, up)| Some((patch, (*up)?)));
         let kept: Vec<(&Patch, bool)> = kept.collect();
@@ -29,7 +29,7 @@ impl<'a> Carried<'a> {
             points[leaf].resize(mesh.points.len(), NONE);
             planes[leaf].iter_mut().for_each(|p| p.resize(mesh.plane_count() as usize, NONE));
         }
-        for (&(leaf, corner), &number) in facets.sources.iter().zip(standing) {
+        for (&(leaf, corner), &number) in places.sources().iter().zip(standing) {
             if let Some(slot) = points[leaf as usize].get_mut(corner as usize) {
                 *slot = number;
             }

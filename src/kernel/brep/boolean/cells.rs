@@ -23,7 +23,8 @@ pub(super) struct Half {
     pub origin: u32,
     /// What follows around the cell.
     pub next: u32,
-    /// The plane that, with the cell's, holds the line; [`NONE`] in untouched facets.
+    /// The plane that, with the cell's, holds the line; [`NONE`] between lattice points of untouched
+    /// facets.
     pub support: u32,
     /// The cell.
     pub cell: u32,
@@ -70,16 +71,16 @@ impl Complex {
     /// Adds a facet that nothing touches.
     pub fn add_whole(&mut self, facet: u32, facets: &Facets) {
         self.begin_cell(NONE, [(facet, 1)].into_iter());
-        for corners in facets.loops(facet) {
-            corners.iter().for_each(|&corner| self.push_half(corner, NONE));
+        for (corners, supports) in facets.supported_loops(facet) {
+            corners.iter().zip(supports).for_each(|(&corner, &s)| self.push_half(corner, s));
             self.end_loop();
         }
     }
 
-    /// Adds cells without a boundary that stand for patches, each given by a facet of its leaf.
-    pub fn add_patches(&mut self, leaves: impl Iterator<Item = u32>) {
+    /// Adds cells without a boundary that stand for patches, each given by a facet of its operand.
+    pub fn add_patches(&mut self, owners: impl Iterator<Item = u32>) {
         self.first_patch = self.cells.len() as u32;
-        leaves.for_each(|facet| self.begin_cell(NONE, [(facet, 1)].into_iter()));
+        owners.for_each(|facet| self.begin_cell(NONE, [(facet, 1)].into_iter()));
     }
 
     /// The number of cells, those that stand for patches with them.

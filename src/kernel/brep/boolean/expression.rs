@@ -13,6 +13,21 @@ pub(super) enum Expression {
     Intersection(Vec<Expression>),
 }
 
+impl Expression {
+    /// The same over leaves numbered from another start.
+    pub fn shifted(self, by: u32) -> Expression {
+        let all = |parts: Vec<Expression>| {
+            parts.into_iter().map(|part| super::frame::deeper(|| part.shifted(by))).collect()
+        };
+        match self {
+            Expression::Leaf(leaf) => Expression::Leaf(leaf + by),
+            Expression::Union(parts) => Expression::Union(all(parts)),
+            Expression::Difference(parts) => Expression::Difference(all(parts)),
+            Expression::Intersection(parts) => Expression::Intersection(all(parts)),
+        }
+    }
+}
+
 #[derive(Clone, Copy, PartialEq, Debug)]
 enum Rule {
     Any,

@@ -12,22 +12,22 @@ use super::{
     hierarchy::Bounds,
     lattice::Lattice,
     patch::{Patches, Snapped},
+    place::Sources,
     polygon,
     space::{NONE, Space},
 };
 use crate::geom::{
     FaceRef,
-    predicates::{Int3, Plane, minus},
+    predicates::{Plane, minus},
 };
 
 /// A facet.
+#[derive(Clone, Copy)]
 pub(super) struct Facet {
-    /// The leaf it belongs to.
-    pub leaf: u32,
-    /// The face of the leaf it is (a part of).
-    pub face: u32,
-    /// Whether it is a whole face, in one plane also after snapping.
-    pub flat: bool,
+    /// The operand it belongs to.
+    pub owner: u32,
+    /// The face it is (a part of).
+    pub source: Source,
     /// Its loops: a range of `Facets::loop_ends`.
     loops: (u32, u32),
     /// Its plane and whether it faces against the plane's normal, once asked for.
@@ -36,36 +36,54 @@ pub(super) struct Facet {
     pub bounds: Bounds,
 }
 
-/// The facets of an operation.
+/// Which face a facet is made of.
+#[derive(Clone, Copy)]
+pub(super) struct Source {
+    /// The leaf.
+    pub leaf: u32,
+    /// The face of the leaf.
+    pub face: u32,
+    /// Whether the face lies in one plane also after snapping.
+    pub flat: bool,
+    /// Whether the facet faces against the face.
+    pub flipped: bool,
+}
+
+/// The facets of the operands of an operation, each operand's together.
 #[derive(Default)]
 pub(super) struct Facets {
     list: Vec<Facet>,
     corners: Vec<u32>,
+    /// For each corner the plane that holds the edge to the next one together with the facet's;
+    /// [`NONE`] for an edge between lattice points.
+    supports: Vec<u32>,
     loop_ends: Vec<u32>,
-    /// The facets of every leaf: one past its last.
-    leaf_ends: Vec<u32>,
-    /// Where each lattice point came from: leaf and point number there.
-    pub sources: Vec<(u32, u32)>,
+    /// The facets of every operand: one past its last.
+    owner_ends: Vec<u32>,
     /// Corners of dropped facets strictly inside edges.
     pub extra: FxHashMap<(u32, u32), Vec<u32>>,
-    /// Largest movement of a corner, in mm of the operation's frame.
-    pub snap: f64,
     /// Whether a facet was dropped.
     pub has_dropped: bool,
 }
 
 impl Facets {
-    /// The faces of all leaves that are in no patch.
-    pub fn of(leaves: &[Leaf], patches: &Patches, lattice: &Lattice, space: &mut Space) -> Facets {
-        let mut facets = Facets::default();
+    /// The faces of all leaves that are in no patch, and where their corners come from.
+    pub fn of(
+        leaves: &[Leaf],
+        patches: &Patches,
+        lattice: &Lattice,
+        space: &mut Space,
+    ) -> (Facets, Sources) {
+        let (mut facets, mut sources) = (Facets::default(), Sources::default());
         let mut dropped = vec![];
         for (number, leaf) in leaves.iter().enumerate() {
-            let snapped = &patches.leaves[number];
-            facets.add_leaf((number as u32, leaf, snapped), lattice, space, &mut dropped);
+            let leaf = (number as u32, leaf, &patches.leaves[number]);
+            let points = sources.add_leaf(leaf, lattice, space);
+            facets.add_leaf(leaf, &points, space, &mut dropped);
         }
         facets.has_dropped = !dropped.is_empty();
         facets.register(&dropped, space);
-        facets
+        (facets, sources)
     }
 
     /// All facets in order.
@@ -73,24 +91,55 @@ impl Facets {
         &self.list
     }
 
-    /// The facets of a leaf.
-    pub fn of_leaf(&self, leaf: usize) -> std::ops::Range<usize> {
-        let start = if leaf == 0 { 0 } else { self.leaf_ends[leaf - 1] };
-        start as usize..self.leaf_ends[leaf] as usize
+    /// The number of operands.
+    pub fn owner_count(&self) -> usize {
+        self.owner_ends.len()
+    }
+
+    /// The facets of an operand.
+    pub fn of_owner(&self, owner: usize) -> std::ops::Range<usize> {
+        let start = if owner == 0 { 0 } else { self.owner_ends[owner - 1] };
+        start as usize..self.owner_ends[owner] as usize
+    }
+
+    /// The box of all facets.
+    pub fn bounds(&self) -> Bounds {
+        self.list.iter().fold(Bounds::EMPTY, |all, facet| all.with(facet.bounds))
+    }
+
+    /// Ends an operand: the facets added since the last one are its own.
+    pub fn end_owner(&mut self) {
+        self.owner_ends.push(self.list.len() as u32);
+    }
+
+    fn ranges(&self, facet: u32) -> impl Iterator<Item = std::ops::Range<usize>> + Clone + '_ {
+        let (start, end) = self.list[facet as usize].loops;
+        (start..end).map(|i| {
+            let from = if i == 0 { 0 } else { self.loop_ends[i as usize - 1] };
+            from as usize..self.loop_ends[i as usize] as usize
+        })
     }
 
     /// The loops of a facet, as points.
     pub fn loops(&self, facet: u32) -> impl Iterator<Item = &[u32]> + Clone {
-        let (start, end) = self.list[facet as usize].loops;
-        (start..end).map(|i| {
-            let from = if i == 0 { 0 } else { self.loop_ends[i as usize - 1] };
-            &self.corners[from as usize..self.loop_ends[i as usize] as usize]
-        })
+        self.ranges(facet).map(|range| &self.corners[range])
+    }
+
+    /// The loops of a facet, as points with the supports of the edges that leave them.
+    pub fn supported_loops(&self, facet: u32) -> impl Iterator<Item = (&[u32], &[u32])> + Clone {
+        self.ranges(facet).map(|range| (&self.corners[range.clone()], &self.supports[range]))
     }
 
     /// The edges of a facet.
     pub fn edges(&self, facet: u32) -> impl Iterator<Item = (u32, u32)> + '_ {
         self.loops(facet).flat_map(polygon::edges)
+    }
+
+    /// The edges of a facet with their supports.
+    pub fn supported_edges(&self, facet: u32) -> impl Iterator<Item = (u32, u32, u32)> + '_ {
+        self.supported_loops(facet).flat_map(|(corners, supports)| {
+            polygon::edges(corners).zip(supports).map(|((a, b), &support)| (a, b, support))
+        })
     }
 
     /// The plane of a facet and whether it faces against the plane's normal.
@@ -112,50 +161,18 @@ impl Facets {
         self.list[facet as usize].plane
     }
 
-    /// The patch that a point borders on.
-    pub fn patch(&self, point: u32, patches: &Patches) -> Option<u32> {
-        let &(leaf, corner) = self.sources.get(point as usize)?;
-        patches.leaves[leaf as usize].patch(corner)
-    }
-
     fn add_leaf(
         &mut self,
         (number, leaf, snapped): (u32, &Leaf, &Snapped),
-        lattice: &Lattice,
-        space: &mut Space,
+        points: &[u32],
+        space: &Space,
         dropped: &mut Vec<[u32; 3]>,
     ) {
-        let mesh = leaf.solid.mesh();
-        let mut points = vec![NONE; mesh.points.len()];
         let mirrors = leaf.local.mirrors();
-        for face in mesh.faces().filter(|f| !snapped.rests(f.index())) {
-            for &corner in face.loops().flatten() {
-                if points[corner as usize] == NONE {
-                    let source = (number, corner, leaf.local.point(mesh.points[corner as usize]));
-                    let local = snapped.points[corner as usize];
-                    points[corner as usize] = self.add_point(source, local, lattice, space);
-                }
-            }
-            self.add_face(number, face, (&points, mirrors), space, dropped);
+        for face in leaf.solid.mesh().faces().filter(|f| !snapped.rests(f.index())) {
+            self.add_face(number, face, (points, mirrors), space, dropped);
         }
-        self.leaf_ends.push(self.list.len() as u32);
-    }
-
-    /// Adds a corner of a leaf that stands at `placed` and is snapped to `local`.
-    fn add_point(
-        &mut self,
-        (leaf, corner, placed): (u32, u32, DVec3),
-        local: Int3,
-        lattice: &Lattice,
-        space: &mut Space,
-    ) -> u32 {
-        let moved = (lattice.place(local.map(|c| c as f64)) - placed).length();
-        self.snap = self.snap.max(moved);
-        let point = space.add_lattice_point(local);
-        if point as usize == self.sources.len() {
-            self.sources.push((leaf, corner));
-        }
-        point
+        self.end_owner();
     }
 
     fn add_face(
@@ -168,9 +185,10 @@ impl Facets {
     ) {
         let loops: Vec<Vec<u32>> = face.loops().map(|l| snapped_loop(l, points, mirrors)).collect();
         let at = |p: u32| space.lattice_point(p).expect("a corner is a lattice point");
-        let number = face.index() as u32;
-        if loops.iter().all(|l| l.len() >= 3) && polygon::is_flat(&loops, &at) {
-            self.push(leaf, number, true, &loops, &at);
+        let flat = loops.iter().all(|l| l.len() >= 3) && polygon::is_flat(&loops, &at);
+        let source = Source { leaf, face: face.index() as u32, flat, flipped: false };
+        if flat {
+            self.push_corners(source, &loops, space);
             return;
         }
         for triangle in polygon::triangles(&loops, &at) {
@@ -181,31 +199,72 @@ impl Facets {
             if polygon::area_vector([&triangle[..]].into_iter(), &at) == [0; 3] {
                 dropped.push(triangle);
             } else {
-                self.push(leaf, number, false, &[triangle.to_vec()], &at);
+                self.push_corners(source, &[triangle.to_vec()], space);
             }
         }
     }
 
-    fn push(
-        &mut self,
-        leaf: u32,
-        face: u32,
-        flat: bool,
-        loops: &[Vec<u32>],
-        at: &impl Fn(u32) -> Int3,
-    ) {
-        let start = self.loop_ends.len() as u32;
-        let mut bounds = Bounds::EMPTY;
+    /// Adds a facet with lattice points for corners.
+    fn push_corners(&mut self, source: Source, loops: &[Vec<u32>], space: &Space) {
         for corners in loops {
-            for &corner in corners {
-                let p = at(corner).map(|c| c as i32);
-                bounds = bounds.with(Bounds { min: p, max: p });
-            }
-            self.corners.extend_from_slice(corners);
-            self.loop_ends.push(self.corners.len() as u32);
+            self.push_loop(corners.iter().map(|&corner| (corner, NONE)));
         }
-        let loops = (start, self.loop_ends.len() as u32);
-        self.list.push(Facet { leaf, face, flat, loops, plane: None, bounds });
+        self.push(source, loops.len(), None, space);
+    }
+
+    /// Adds a loop of the facet that is [pushed](Facets::push) next: its corners and supports.
+    pub fn push_loop(&mut self, corners: impl Iterator<Item = (u32, u32)>) {
+        for (corner, support) in corners {
+            self.corners.push(corner);
+            self.supports.push(support);
+        }
+        self.loop_ends.push(self.corners.len() as u32);
+    }
+
+    /// Adds a facet of the loops added last, to the operand that ends next.
+    pub fn push(
+        &mut self,
+        source: Source,
+        loops: usize,
+        plane: Option<(u32, bool)>,
+        space: &Space,
+    ) {
+        let (owner, end) = (self.owner_ends.len() as u32, self.loop_ends.len());
+        let from = if end == loops { 0 } else { self.loop_ends[end - loops - 1] };
+        let corners = self.corners[from as usize..].iter();
+        let bounds = corners.fold(Bounds::EMPTY, |all, &p| all.with(space.bounds(p)));
+        let loops = ((end - loops) as u32, end as u32);
+        self.list.push(Facet { owner, source, loops, plane, bounds });
+    }
+
+    /// The facets of one operand alone.
+    pub fn operand(&self, owner: u32) -> Facets {
+        let mut alone = Facets::default();
+        self.of_owner(owner as usize).for_each(|f| alone.push_copy(self, f as u32, false));
+        alone.end_owner();
+        alone
+    }
+
+    /// Adds a facet of another list, turned over if `flip`.
+    pub fn push_copy(&mut self, others: &Facets, number: u32, flip: bool) {
+        let start = self.loop_ends.len() as u32;
+        let mut facet = others.list[number as usize];
+        for (corners, supports) in others.supported_loops(number) {
+            if flip {
+                let last = supports[corners.len() - 1];
+                let supports = supports[..corners.len() - 1].iter().rev().chain([&last]);
+                self.push_loop(corners.iter().rev().copied().zip(supports.copied()));
+            } else {
+                self.push_loop(corners.iter().copied().zip(supports.iter().copied()));
+            }
+        }
+        facet.loops = (start, self.loop_ends.len() as u32);
+        facet.owner = self.owner_ends.len() as u32;
+        if flip {
+            facet.source.flipped = !facet.source.flipped;
+            facet.plane = facet.plane.map(|(plane, turned)| (plane, !turned));
+        }
+        self.list.push(facet);
     }
 
     /// Puts the corners of dropped triangles on the edges that run over them. Triangles that share

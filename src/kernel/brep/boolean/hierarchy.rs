@@ -26,7 +26,21 @@ impl Bounds {
         (0..3).all(|i| self.min[i] <= other.max[i] && other.min[i] <= self.max[i])
     }
 
-    fn middle(&self, axis: usize) -> i64 {
+    /// Whether the boxes have a volume in common.
+    pub fn overlaps(&self, other: &Bounds) -> bool {
+        (0..3).all(|i| self.min[i] < other.max[i] && other.min[i] < self.max[i])
+    }
+
+    /// What is in both boxes.
+    pub fn common(self, other: Bounds) -> Bounds {
+        Bounds {
+            min: std::array::from_fn(|i| self.min[i].max(other.min[i])),
+            max: std::array::from_fn(|i| self.max[i].min(other.max[i])),
+        }
+    }
+
+    /// Twice the middle along an axis.
+    pub fn middle(&self, axis: usize) -> i64 {
         i64::from(self.min[axis]) + i64::from(self.max[axis])
     }
 }
@@ -71,7 +85,7 @@ impl Hierarchy {
                 (nodes[at].start, nodes[at].end) = (start as u32, end as u32);
                 continue;
             }
-            let axis = widest(range);
+            let axis = widest(range.iter().map(|item| item.0));
             let half = range.len() / 2;
             range.select_nth_unstable_by_key(half, |item| (item.0.middle(axis), item.1));
             let first = nodes.len();
@@ -145,12 +159,12 @@ impl Hierarchy {
     }
 }
 
-/// The axis along which the middles spread most.
-fn widest(items: &[(Bounds, u32)]) -> usize {
+/// The axis along which the middles of boxes spread most.
+pub(super) fn widest(boxes: impl Iterator<Item = Bounds> + Clone) -> usize {
     let spread = |axis: usize| {
-        let middles = items.iter().map(|item| item.0.middle(axis));
+        let middles = boxes.clone().map(|item| item.middle(axis));
         let (low, high) = middles.fold((i64::MAX, i64::MIN), |r, m| (r.0.min(m), r.1.max(m)));
-        high - low
+        high.saturating_sub(low)
     };
     (0..3).max_by_key(|&axis| (spread(axis), 2 - axis)).unwrap_or(0)
 }

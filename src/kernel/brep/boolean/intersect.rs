@@ -9,7 +9,7 @@ use std::cmp::Ordering;
 use super::{
     facet::Facets,
     hierarchy::{Bounds, Hierarchy},
-    space::{Space, main_axis},
+    space::{NONE, Space, main_axis},
     union_find::Sets,
 };
 
@@ -24,7 +24,7 @@ pub(super) struct Trace {
     pub b: u32,
     /// The plane that cuts the facet's plane in it.
     pub support: u32,
-    /// The leaf that left it.
+    /// The operand that left it.
     pub owner: u32,
 }
 
@@ -38,14 +38,13 @@ pub(super) struct Meetings {
     pub grouped: Vec<bool>,
 }
 
-/// Finds all traces. Facets of one leaf are compared only if the leaf is not trusted to be free of
-/// self-intersections.
-pub(super) fn meetings(facets: &mut Facets, space: &mut Space, trusted: bool) -> Meetings {
+/// Finds all traces that the given pairs of facets leave on each other.
+pub(super) fn meetings(facets: &mut Facets, pairs: &[(u32, u32)], space: &mut Space) -> Meetings {
     let count = facets.list().len();
     let mut meetings =
         Meetings { traces: vec![], coplanar: Sets::new(count), grouped: vec![false; count] };
     let mut scratch = Scratch::default();
-    for (f, g) in candidates(facets, trusted) {
+    for &(f, g) in pairs {
         compare(f, g, facets, space, &mut meetings, &mut scratch);
     }
     extra_points(facets, &mut meetings.traces);
@@ -54,31 +53,29 @@ pub(super) fn meetings(facets: &mut Facets, space: &mut Space, trusted: bool) ->
     meetings
 }
 
-/// Pairs of facets whose boxes touch, in a fixed order.
-fn candidates(facets: &Facets, trusted: bool) -> Vec<(u32, u32)> {
-    let mut leaf_count = 0;
+/// Pairs of facets whose boxes touch, in a fixed order. Facets of one operand are compared only if
+/// operands are not trusted to be free of self-intersections.
+pub(super) fn candidates(facets: &Facets, trusted: bool) -> Vec<(u32, u32)> {
     let mut pairs = vec![];
-    if let Some(last) = facets.list().last() {
-        leaf_count = last.leaf as usize + 1;
-    }
-    let ranges: Vec<_> = (0..leaf_count).map(|leaf| facets.of_leaf(leaf)).collect();
+    let ranges: Vec<_> = (0..facets.owner_count()).map(|owner| facets.of_owner(owner)).collect();
     let bounds = |range: &std::ops::Range<usize>| {
         let list = &facets.list()[range.clone()];
         list.iter().fold(Bounds::EMPTY, |all, f| all.with(f.bounds))
     };
-    let leaves = Hierarchy::new(ranges.iter().map(bounds));
+    let owners = Hierarchy::new(ranges.iter().map(bounds));
     let mut trees: Vec<Option<Hierarchy>> = ranges.iter().map(|_| None).collect();
-    let tree =
-        |leaf: usize| Hierarchy::new(facets.list()[ranges[leaf].clone()].iter().map(|f| f.bounds));
-    let mut leaf_pairs = vec![];
-    leaves.own_pairs(|a, b| leaf_pairs.push((a as usize, b as usize)));
+    let tree = |owner: usize| {
+        Hierarchy::new(facets.list()[ranges[owner].clone()].iter().map(|f| f.bounds))
+    };
+    let mut owner_pairs = vec![];
+    owners.own_pairs(|a, b| owner_pairs.push((a as usize, b as usize)));
     if !trusted {
-        leaf_pairs.extend((0..leaf_count).map(|leaf| (leaf, leaf)));
+        owner_pairs.extend((0..ranges.len()).map(|owner| (owner, owner)));
     }
-    leaf_pairs.sort_unstable();
-    for (a, b) in leaf_pairs {
-        for leaf in [a, b] {
-            trees[leaf].get_or_insert_with(|| tree(leaf));
+    owner_pairs.sort_unstable();
+    for (a, b) in owner_pairs {
+        for owner in [a, b] {
+            trees[owner].get_or_insert_with(|| tree(owner));
         }
         let (Some(first), Some(second)) = (&trees[a], &trees[b]) else { continue };
         let (start, other) = (ranges[a].start as u32, ranges[b].start as u32);
@@ -97,11 +94,11 @@ fn extra_points(facets: &Facets, traces: &mut Vec<Trace>) {
         return;
     }
     for facet in 0..facets.list().len() as u32 {
-        let owner = facets.list()[facet as usize].leaf;
+        let owner = facets.list()[facet as usize].owner;
         for (a, b) in facets.edges(facet) {
             let points = facets.extra.get(&(a.min(b), a.max(b)));
             for &p in points.into_iter().flatten() {
-                traces.push(Trace { facet, a: p, b: p, support: super::space::NONE, owner });
+                traces.push(Trace { facet, a: p, b: p, support: NONE, owner });
             }
         }
     }
@@ -154,7 +151,7 @@ fn compare(
     collect(g, p, facets, space, sides_g, events_g);
     sort(events_f, axis, space);
     sort(events_g, axis, space);
-    let (owner_f, owner_g) = (facets.list()[f as usize].leaf, facets.list()[g as usize].leaf);
+    let (owner_f, owner_g) = (facets.list()[f as usize].owner, facets.list()[g as usize].owner);
     overlay(events_f, events_g, axis, space, |a, b| {
         meetings.traces.push(Trace { facet: f, a, b, support: q, owner: owner_g });
         meetings.traces.push(Trace { facet: g, a, b, support: p, owner: owner_f });
@@ -180,7 +177,8 @@ fn collect(
 ) {
     events.clear();
     let mut start = 0;
-    for corners in facets.loops(facet) {
+    let own = facets.known_plane(facet).map_or(NONE, |known| known.0);
+    for (corners, supports) in facets.supported_loops(facet) {
         let count = corners.len();
         for k in 0..count {
             let next = (k + 1) % count;
@@ -196,18 +194,12 @@ fn collect(
             let point = match (s, t) {
                 (0, _) => a,
                 (_, 0) => b,
-                _ => pierce(a, b, plane, space),
+                _ => space.pierce((a, b), (own, supports[k]), plane),
             };
             events.push(Event { point, above, below });
         }
         start += count;
     }
-}
-
-/// The point where the edge between two lattice points on different sides of a plane meets it.
-fn pierce(a: u32, b: u32, plane: u32, space: &mut Space) -> u32 {
-    let [first, second] = space.edge_planes(a, b);
-    space.meet(first, second, plane).expect("an edge that changes sides meets the plane")
 }
 
 /// Sorts events along an axis and makes one of all at the same point.

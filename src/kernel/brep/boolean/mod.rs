@@ -45,13 +45,20 @@ mod frame;
 mod hierarchy;
 mod intersect;
 mod lattice;
+mod locate;
 mod nesting;
 mod origins;
 mod outline;
 mod patch;
+mod place;
 mod polygon;
+mod region;
+mod rest;
+mod schedule;
 mod seed;
 mod space;
+mod stage;
+mod staged;
 mod union_find;
 
 use std::sync::Arc;
@@ -59,8 +66,16 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use self::{
-    assemble::Assembly, cells::Complex, facet::Facets, frame::Plan, lattice::Lattice,
+    assemble::Assembly,
+    classify::{Links, classify},
+    facet::Facets,
+    frame::Plan,
+    lattice::Lattice,
     patch::Patches,
+    place::Places,
+    region::Regions,
+    seed::Surroundings,
+    space::Space,
 };
 use super::polyhedron::Polyhedron;
 use crate::geom::Placement;
@@ -175,59 +190,39 @@ fn arranged(plan: &Plan, trusted: bool, resting: bool) -> Result<Option<Evaluate
     }
     let (min, max) = facet::extent(&plan.leaves);
     let lattice = Lattice::covering(min, max).ok_or(BooleanError::NotFinite)?;
-    let mut space = space::Space::default();
+    let mut space = Space::default();
     let patches = Patches::of(&plan.leaves, &lattice, resting);
-    let mut facets = Facets::of(&plan.leaves, &patches, &lattice, &mut space);
+    let (mut facets, sources) = Facets::of(&plan.leaves, &patches, &lattice, &mut space);
     if facets.has_dropped && !patches.list.is_empty() {
         // What is left of a dropped facet may have to split an edge of a patch.
         return arranged(plan, trusted, false);
     }
-    let complex = complex(&mut facets, &patches, &mut space, trusted);
-    let leaves = (&plan.leaves[..], &patches);
-    let Some(sides) =
-        classify::classify(&complex, &plan.expression, leaves, &mut facets, &mut space)
-    else {
+    if trusted
+        && let Some(solid) =
+            staged::evaluate(plan, &lattice, (&facets, &sources, &patches), &mut space)
+    {
+        return Ok(Some(Evaluated {
+            solid,
+            snap: plan.snap.max(sources.snap),
+            step: lattice.step(),
+        }));
+    }
+    let pairs = intersect::candidates(&facets, trusted);
+    let resting = patches.list.iter().map(|p| facets.of_owner(p.leaf as usize).start as u32);
+    let resting: Vec<u32> = resting.collect();
+    let complex = arrange::complex(&mut facets, &pairs, &resting, &mut space, trusted);
+    let borders = patches.borders(&sources.list);
+    let mut links = Links::of(&complex, &borders, &mut facets, &mut space);
+    let surroundings = Surroundings { complex: &complex, leaves: &plan.leaves, patches: &patches };
+    let seeds = surroundings.seeds(&mut links, &mut facets, &mut space);
+    let regions = Regions::of_sets(&complex, &mut links.regions);
+    let Some(sides) = classify(&regions, links.radial, &seeds, &plan.expression, &facets) else {
         return Ok(None);
     };
+    let places = Places::new(plan, &lattice, &sources, &facets);
     let (facets, space, complex, sides) = (&facets, &space, &complex, &sides);
-    let (lattice, patches) = (&lattice, &patches);
-    let mesh = Assembly { plan, lattice, patches, facets, space, complex, sides }.mesh();
+    let (patches, borders, places) = (&patches, &borders, &places);
+    let mesh = Assembly { plan, patches, borders, places, facets, space, complex, sides }.mesh();
     let Ok(solid) = Polyhedron::new(mesh) else { return Ok(None) };
-    Ok(Some(Evaluated { solid, snap: plan.snap.max(facets.snap), step: lattice.step() }))
-}
-
-/// Cuts all facets into cells.
-fn complex(
-    facets: &mut Facets,
-    patches: &Patches,
-    space: &mut space::Space,
-    trusted: bool,
-) -> Complex {
-    let mut meetings = intersect::meetings(facets, space, trusted);
-    let mut complex = Complex::default();
-    let mut groups: Vec<(u32, u32)> = vec![];
-    let mut traces = &meetings.traces[..];
-    for facet in 0..facets.list().len() as u32 {
-        let count = traces.iter().take_while(|t| t.facet == facet).count();
-        traces = &traces[count..];
-        if count > 0 || meetings.grouped[facet as usize] {
-            groups.push((meetings.coplanar.find(facet), facet));
-        } else {
-            complex.add_whole(facet, facets);
-        }
-    }
-    groups.sort_unstable();
-    for group in groups.chunk_by(|a, b| a.0 == b.0) {
-        let members: Vec<u32> = group.iter().map(|g| g.1).collect();
-        let range = |facet: &u32| {
-            let start = meetings.traces.partition_point(|t| t.facet < *facet);
-            let end = meetings.traces.partition_point(|t| t.facet <= *facet);
-            &meetings.traces[start..end]
-        };
-        let traces: Vec<_> = members.iter().flat_map(range).copied().collect();
-        arrange::arrange(&members, &traces, facets, space, trusted, &mut complex);
-    }
-    complex.add_patches(patches.list.iter().map(|p| facets.of_leaf(p.leaf as usize).start as u32));
-    complex.finish(space.point_count());
-    complex
+    Ok(Some(Evaluated { solid, snap: plan.snap.max(sources.snap), step: lattice.step() }))
 }

@@ -110,12 +110,16 @@ struct Below {
 
 impl Below {
     fn new(graph: &Graph, space: &Space) -> Below {
-        Below { tree: Hierarchy::new(graph.edges.iter().map(|e| space.bounds(e.a, e.b))) }
+        Below {
+            tree: Hierarchy::new(
+                graph.edges.iter().map(|e| space.bounds(e.a).with(space.bounds(e.b))),
+            ),
+        }
     }
 
     /// The walk above the nearest edge straight below a point, not counting edges through it.
     fn walk(&self, point: u32, graph: &Graph, space: &Space) -> Option<u32> {
-        let mut bounds = space.bounds(point, point);
+        let mut bounds = space.bounds(point);
         let [x, y] = graph.axes;
         let across = 3 - x - y;
         bounds = Bounds {

@@ -2,7 +2,12 @@
 
 use rustc_hash::FxHashMap;
 
-use super::{cells::Complex, facet::Facets, frame::Plan, space::NONE};
+use super::{
+    cells::Complex,
+    facet::{Facets, Source},
+    frame::Plan,
+    space::NONE,
+};
 use crate::geom::{Origin, Surface};
 
 /// The plane of a piece.
@@ -47,6 +52,7 @@ impl Key {
 pub(super) struct Labels<'a> {
     plan: &'a Plan,
     facets: &'a Facets,
+    exact: bool,
     /// The exact plane of a source plane, and whether it faces against it.
     planes: FxHashMap<(u32, u32), (u32, bool)>,
     numbers: FxHashMap<(u32, u32), u32>,
@@ -59,14 +65,15 @@ impl<'a> Labels<'a> {
         let mut labels = Labels {
             plan,
             facets,
+            exact: false,
             planes: FxHashMap::default(),
             numbers: FxHashMap::default(),
             origins: vec![],
         };
         for (number, facet) in (0u32..).zip(facets.list()) {
-            if let (true, Some(plane)) = (facet.flat, facets.known_plane(number)) {
-                let source = labels.source_plane(facet.leaf, facet.face);
-                labels.planes.entry(source).or_insert(plane);
+            if let (true, Some((plane, turned))) = (facet.source.flat, facets.known_plane(number)) {
+                let source = labels.source_plane(facet.source.leaf, facet.source.face);
+                labels.planes.entry(source).or_insert((plane, turned != facet.source.flipped));
             }
         }
         labels
@@ -77,19 +84,26 @@ impl<'a> Labels<'a> {
         (leaf, mesh.face(face as usize).plane())
     }
 
+    /// Labels that hold pieces apart unless they lie in exactly one plane. The planes of all facets
+    /// must be known.
+    pub fn exact(plan: &'a Plan, facets: &'a Facets) -> Labels<'a> {
+        let (planes, numbers) = (FxHashMap::default(), FxHashMap::default());
+        Labels { plan, facets, exact: true, planes, numbers, origins: vec![] }
+    }
+
     /// The key of a cell whose outside is above (`up`) or below.
     pub fn key(&mut self, complex: &Complex, cell: u32, up: bool) -> Key {
         let cover = complex.cover(cell);
         let fitting = cover.iter().find(|c| (c.1 > 0) == up);
         let (number, count) = *fitting.unwrap_or(&cover[0]);
-        let facet = &self.facets.list()[number as usize];
-        let (leaf, face) = (facet.leaf, facet.face);
-        let source = self.source_plane(leaf, face);
-        let exact = self.planes.get(&source).filter(|_| facet.flat);
-        let (flat, up) = match (exact, complex.plane(cell)) {
-            (Some(&(plane, turned)), NONE) => (Flat::Exact(plane), up != turned),
-            (Some(_), plane) => (Flat::Exact(plane), up),
-            (None, _) => (Flat::Source(source.0, source.1), up == (count > 0)),
+        let Source { leaf, face, flipped, .. } = self.facets.list()[number as usize].source;
+        let (flat, up) = match (complex.plane(cell), self.exact_plane(number)) {
+            (NONE, Some((plane, turned))) => (Flat::Exact(plane), up != turned),
+            (plane, Some(_)) => (Flat::Exact(plane), up),
+            (_, None) => {
+                let (leaf, plane) = self.source_plane(leaf, face);
+                (Flat::Source(leaf, plane), up == ((count > 0) != flipped))
+            }
         };
         let origin = self.origin(leaf, face);
         let patch = match self.origins[origin as usize].surface {
@@ -97,6 +111,16 @@ impl<'a> Labels<'a> {
             _ => Patch::Face(leaf, face),
         };
         Key { flat, up, patch, origin }
+    }
+
+    /// The plane of a facet and whether it faces against it, where that counts.
+    fn exact_plane(&self, facet: u32) -> Option<(u32, bool)> {
+        if self.exact {
+            return self.facets.known_plane(facet);
+        }
+        let Source { leaf, face, flat, flipped } = self.facets.list()[facet as usize].source;
+        let known = self.planes.get(&self.source_plane(leaf, face)).filter(|_| flat);
+        known.map(|&(plane, turned)| (plane, turned != flipped))
     }
 
     /// The number of a face's origin in the result; equal origins get one number.

@@ -11,6 +11,7 @@ use super::{
     boundary::Boundary,
     cells::Complex,
     origins::Flat,
+    patch::Borders,
     space::{NONE, Space},
     union_find::Sets,
 };
@@ -34,7 +35,7 @@ impl Outline {
     /// Traces the outlines.
     ///
     /// `borders` are the points at which patches border: only one fan is there, and it stays.
-    pub fn of(boundary: &Boundary, borders: &[bool]) -> Outline {
+    pub fn of(boundary: &Boundary, borders: &Borders, space: &Space) -> Outline {
         let count = boundary.twin.len();
         let mut loops = loops(boundary);
         loops.sort_by_key(|l| l.0);
@@ -54,10 +55,10 @@ impl Outline {
             }
         }
         let mut sets = Sets::new(count);
-        let mut leaving = vec![NONE; borders.len()];
+        let mut leaving = vec![NONE; space.point_count()];
         for half in boundary.outer() {
             let point = boundary.origin[half as usize] as usize;
-            if borders[point] {
+            if borders.patch(point as u32).is_some() {
                 leaving[point] = half.min(leaving[point]);
                 sets.join(half, leaving[point]);
             } else {
@@ -73,7 +74,7 @@ impl Outline {
     /// Whether each vertex is dropped, by the half-edge that stands for it.
     pub fn dropped(
         &self,
-        (boundary, borders): (&Boundary, &[bool]),
+        (boundary, borders): (&Boundary, &Borders),
         complex: &Complex,
         space: &Space,
     ) -> Vec<bool> {
@@ -87,8 +88,8 @@ impl Outline {
             standing[boundary.origin[half as usize] as usize] += 1;
         }
         let alone = |half: u32| {
-            let point = boundary.origin[half as usize] as usize;
-            standing[point] == 1 && !borders[point]
+            let point = boundary.origin[half as usize];
+            standing[point as usize] == 1 && borders.patch(point).is_none()
         };
         let mut dropped = vec![false; boundary.twin.len()];
         let straight = Straight { outline: self, boundary, complex, space };

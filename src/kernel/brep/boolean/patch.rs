@@ -46,7 +46,7 @@ impl Snapped {
     }
 
     /// The patch that a point of the leaf belongs to.
-    pub fn patch(&self, point: u32) -> Option<u32> {
+    fn patch(&self, point: u32) -> Option<u32> {
         self.patches.get(point as usize).copied().filter(|&p| p != NONE)
     }
 }
@@ -57,6 +57,16 @@ pub(super) struct Patches {
     pub leaves: Vec<Snapped>,
     /// The patches.
     pub list: Vec<Patch>,
+}
+
+/// The patch that each point borders on, or [`NONE`].
+pub(super) struct Borders(pub Vec<u32>);
+
+impl Borders {
+    /// The patch that a point borders on.
+    pub fn patch(&self, point: u32) -> Option<u32> {
+        self.0.get(point as usize).copied().filter(|&patch| patch != NONE)
+    }
 }
 
 impl Patches {
@@ -102,6 +112,15 @@ impl Patches {
             snapped.patches = numbers;
         }
         self.leaves.push(snapped);
+    }
+
+    /// Which patch each point borders on, given the leaves' corners that the points are.
+    pub fn borders(&self, sources: &[(u32, u32)]) -> Borders {
+        if self.list.is_empty() {
+            return Borders(vec![]);
+        }
+        let patch = |&(leaf, corner): &(u32, u32)| self.leaves[leaf as usize].patch(corner);
+        Borders(sources.iter().map(|source| patch(source).unwrap_or(NONE)).collect())
     }
 
     /// The triangles, fans of each loop, of a patch's surface.

@@ -10,13 +10,13 @@ use std::cmp::Ordering;
 
 use super::{
     cells::Complex,
+    classify::{Links, following_side},
     facet::Facets,
     frame::Leaf,
     hierarchy::{Bounds, Hierarchy},
     patch::Patches,
     polygon,
     space::Space,
-    union_find::Sets,
 };
 use crate::geom::{
     predicates::{Int3, cross, dot, minus},
@@ -45,19 +45,12 @@ pub(super) struct Surroundings<'a> {
     pub complex: &'a Complex,
     pub leaves: &'a [Leaf],
     pub patches: &'a Patches,
-    /// Half-edges in radial order around edges with more than two.
-    pub radial: &'a [(u32, Vec<u32>)],
 }
 
 impl Surroundings<'_> {
     /// The seeds of all components.
-    pub fn seeds(
-        &self,
-        components: &mut Sets,
-        facets: &mut Facets,
-        space: &mut Space,
-    ) -> Vec<Seed> {
-        let Surroundings { complex, radial, .. } = *self;
+    pub fn seeds(&self, links: &mut Links, facets: &mut Facets, space: &mut Space) -> Vec<Seed> {
+        let (complex, Links { components, radial, .. }) = (self.complex, links);
         let of_cell: Vec<u32> =
             (0..complex.cell_count() as u32).map(|cell| components.find(cell)).collect();
         let firsts = first_points(complex, &of_cell, space);
@@ -80,7 +73,7 @@ impl Surroundings<'_> {
         let mut owned: Vec<(u32, u32, bool, u32)> = vec![];
         for cell in 0..complex.first_patch {
             for &(facet, _) in complex.cover(cell) {
-                let leaf = facets.list()[facet as usize].leaf;
+                let leaf = facets.list()[facet as usize].source.leaf;
                 owned.push((of_cell[cell as usize], leaf, false, facet));
             }
         }
@@ -208,7 +201,7 @@ fn unbounded_side(
     // About the edge's direction away from the point, the first cell has all others to its left.
     let first =
         spokes.iter().position(|s| spokes.iter().all(|t| s.turn(t, axis, sign) >= 0)).unwrap_or(0);
-    let following = super::classify::following_side(complex, around[first]);
+    let following = following_side(complex, around[first]);
     if ahead { following ^ 1 } else { following }
 }
 

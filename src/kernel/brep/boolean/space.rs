@@ -51,6 +51,8 @@ pub(super) struct Space {
     /// The last point of three planes in each cell of a grid.
     cells: FxHashMap<[i32; 3], u32>,
     edges: FxHashMap<(u32, u32), [u32; 2]>,
+    /// The points where edges, known by their ends, meet planes.
+    pierced: FxHashMap<(u32, u32, u32), u32>,
 }
 
 impl Space {
@@ -215,7 +217,7 @@ impl Space {
     }
 
     /// Two planes, each along an axis, that meet in the line through two lattice points.
-    pub fn edge_planes(&mut self, a: u32, b: u32) -> [u32; 2] {
+    fn edge_planes(&mut self, a: u32, b: u32) -> [u32; 2] {
         let key = (a.min(b), a.max(b));
         if let Some(&planes) = self.edges.get(&key) {
             return planes;
@@ -246,18 +248,34 @@ impl Space {
         if first == plane || (second != plane && steeper) { second } else { first }
     }
 
+    /// The point where an edge meets a plane that its ends are on different sides of. The edge is in
+    /// `own` and `support`; without a support its ends are lattice points.
+    pub fn pierce(&mut self, (a, b): (u32, u32), (own, support): (u32, u32), plane: u32) -> u32 {
+        let key = (a.min(b), a.max(b), plane);
+        if let Some(&point) = self.pierced.get(&key) {
+            return point;
+        }
+        let [first, second] = if support == NONE { self.edge_planes(a, b) } else { [own, support] };
+        let point = self.meet(first, second, plane);
+        let point = point.expect("an edge that changes sides meets the plane");
+        self.pierced.insert(key, point);
+        point
+    }
+
     /// The direction of the line in which two planes meet.
     pub fn line(&self, p: u32, q: u32) -> [i128; 3] {
         cross(self.plane(p).normal, self.plane(q).normal)
     }
 
-    /// A box of lattice points around two points.
-    pub fn bounds(&self, a: u32, b: u32) -> Bounds {
-        let (p, q) = (self.near(a), self.near(b));
-        Bounds {
-            min: std::array::from_fn(|i| (p[i].min(q[i]) - NEAR).floor() as i32),
-            max: std::array::from_fn(|i| (p[i].max(q[i]) + NEAR).ceil() as i32),
+    /// A box of lattice points around a point; just the point if it is one.
+    pub fn bounds(&self, point: u32) -> Bounds {
+        let Point { near, planes, .. } = &self.points[point as usize];
+        if planes[0] == NONE {
+            let at = near.map(|c| c as i32);
+            return Bounds { min: at, max: at };
         }
+        let [min, max] = [-NEAR, NEAR].map(|margin| near.map(|c| c + margin));
+        Bounds { min: min.map(|c| c.floor() as i32), max: max.map(|c| c.ceil() as i32) }
     }
 }
 

@@ -1,0 +1,128 @@
+//! What of its operands a stage leaves alone.
+//!
+//! Facets whose boxes meet no box of another operand's facet need no arrangement. Those that hang
+//! together at points and border on facets that do take part are a patch: what holds at the border
+//! holds for the patch. Those that border on nothing are a shell of their own.
+
+use super::{
+    facet::Facets,
+    hierarchy::{Bounds, Hierarchy},
+    patch::Borders,
+    space::{NONE, Space},
+    union_find::Sets,
+};
+
+/// Facets of one operand that hang together and rest.
+pub(super) struct Resting {
+    /// The operand.
+    pub owner: u32,
+    /// Their numbers there.
+    pub facets: Vec<u32>,
+}
+
+/// How the facets of operands are shared out.
+pub(super) struct Rest {
+    /// Facets that take part, as operand and number there, in order.
+    pub active: Vec<(u32, u32)>,
+    /// Pairs of them whose boxes touch, by their places in that order.
+    pub pairs: Vec<(u32, u32)>,
+    /// What rests next to facets that take part.
+    pub patches: Vec<Resting>,
+    /// What rests and borders on nothing.
+    pub shells: Vec<Resting>,
+    /// The patch that each point borders on.
+    pub borders: Borders,
+}
+
+impl Rest {
+    /// Shares out the facets of the operands, each with one owner.
+    pub fn of(operands: &[Facets], space: &Space) -> Rest {
+        let mut touching = touching(operands);
+        let mut numbers: Vec<Vec<u32>> =
+            operands.iter().map(|o| vec![NONE; o.list().len()]).collect();
+        for &[a, b] in &touching {
+            numbers[a.0 as usize][a.1 as usize] = 0;
+            numbers[b.0 as usize][b.1 as usize] = 0;
+        }
+        let mut active = vec![];
+        for (owner, numbers) in (0u32..).zip(&mut numbers) {
+            for (facet, number) in (0u32..).zip(numbers).filter(|n| *n.1 != NONE) {
+                *number = active.len() as u32;
+                active.push((owner, facet));
+            }
+        }
+        touching.sort_unstable();
+        let place = |(owner, facet): (u32, u32)| numbers[owner as usize][facet as usize];
+        let pairs = touching.into_iter().map(|[a, b]| (place(a), place(b))).collect();
+        let borders = Borders(vec![NONE; space.point_count()]);
+        let mut rest = Rest { active, pairs, patches: vec![], shells: vec![], borders };
+        for (owner, numbers) in (0u32..).zip(&numbers) {
+            rest.share(owner, &operands[owner as usize], numbers);
+        }
+        rest
+    }
+
+    /// Groups the resting facets of an operand.
+    fn share(&mut self, owner: u32, facets: &Facets, numbers: &[u32]) {
+        // A resting facet at each point, until all are in groups; then the group.
+        let holder = &mut self.borders.0;
+        let count = numbers.len() as u32;
+        let mut sets = Sets::new(numbers.len());
+        for facet in (0..count).filter(|&f| numbers[f as usize] == NONE) {
+            for &point in facets.loops(facet).flatten() {
+                match &mut holder[point as usize] {
+                    slot if *slot == NONE => *slot = facet,
+                    slot => sets.join(*slot, facet),
+                }
+            }
+        }
+        let mut borders = vec![false; numbers.len()];
+        for facet in (0..count).filter(|&f| numbers[f as usize] != NONE) {
+            for &point in facets.loops(facet).flatten() {
+                let held = holder[point as usize];
+                if held != NONE {
+                    borders[sets.find(held) as usize] = true;
+                }
+            }
+        }
+        // The group of each set, by its least facet.
+        let mut groups = vec![NONE; numbers.len()];
+        for facet in (0..count).filter(|&f| numbers[f as usize] == NONE) {
+            let root = sets.find(facet) as usize;
+            let list = if borders[root] { &mut self.patches } else { &mut self.shells };
+            if groups[root] == NONE {
+                groups[root] = list.len() as u32;
+                list.push(Resting { owner, facets: vec![] });
+            }
+            list[groups[root] as usize].facets.push(facet);
+        }
+        for facet in (0..count).filter(|&f| numbers[f as usize] == NONE) {
+            let root = sets.find(facet) as usize;
+            let group = if borders[root] { groups[root] } else { NONE };
+            facets.loops(facet).flatten().for_each(|&p| holder[p as usize] = group);
+        }
+    }
+}
+
+/// Pairs of facets of different operands, the first with less numbers, whose boxes touch.
+fn touching(operands: &[Facets]) -> Vec<[(u32, u32); 2]> {
+    let around: Vec<Bounds> = operands.iter().map(Facets::bounds).collect();
+    let mut found = vec![];
+    let mut owners = vec![];
+    Hierarchy::new(around.iter().copied()).own_pairs(|a, b| owners.push((a, b)));
+    for (a, b) in owners {
+        let [near_a, near_b] = [(a, b), (b, a)]
+            .map(|(one, other)| near(&operands[one as usize], &around[other as usize]));
+        let tree = |near: &[(Bounds, u32)]| Hierarchy::new(near.iter().map(|n| n.0));
+        tree(&near_a).pairs(&tree(&near_b), |f, g| {
+            found.push([(a, near_a[f as usize].1), (b, near_b[g as usize].1)]);
+        });
+    }
+    found
+}
+
+/// The facets whose boxes meet a box.
+fn near(facets: &Facets, bounds: &Bounds) -> Vec<(Bounds, u32)> {
+    let list = facets.list().iter().map(|f| f.bounds).zip(0u32..);
+    list.filter(|(own, _)| own.meets(bounds)).collect()
+}

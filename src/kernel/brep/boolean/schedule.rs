@@ -1,0 +1,194 @@
+//! In which stages an operation is evaluated.
+//!
+//! One arrangement of all leaves is best where few of them overlap: plates with holes, lattices of
+//! bars. In a crowd, where many leaves overlap in one place, most of what an arrangement of all
+//! would cut is hidden in others; there, parts of the operation are evaluated on their own first,
+//! so that what they hide is gone. Only boxes are looked at.
+
+use super::{
+    expression::Expression,
+    frame::deeper,
+    hierarchy::{Bounds, Hierarchy, widest},
+};
+
+/// What a stage takes up.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) enum Operand {
+    /// A leaf.
+    Leaf(u32),
+    /// What a stage before it left.
+    Stage(u32),
+}
+
+/// A part of the operation: an expression over operands.
+#[derive(Debug)]
+pub(super) struct Stage {
+    /// What is taken up, in the order of their numbers in the expression.
+    pub operands: Vec<Operand>,
+    /// What is made of them.
+    pub expression: Expression,
+}
+
+/// The stages of an operation, each after those it takes up; the last one is the whole.
+pub(super) fn stages(expression: &Expression, boxes: &[Bounds]) -> Vec<Stage> {
+    let mut schedule = Schedule { boxes, done: vec![] };
+    let whole = schedule.part(expression);
+    schedule.done.push(whole.stage());
+    schedule.done
+}
+
+/// Largest number of pairs of operands in one stage that overlap each other and a third one: four
+/// solids that all overlap are the most for which one arrangement pays.
+const CROWD: usize = 3;
+
+struct Schedule<'a> {
+    boxes: &'a [Bounds],
+    done: Vec<Stage>,
+}
+
+/// An expression that is not yet evaluated.
+struct Open {
+    operands: Vec<(Operand, Bounds)>,
+    expression: Expression,
+    /// Where the result can be.
+    bounds: Bounds,
+    /// Operands looked at so far, again and again.
+    looked: usize,
+}
+
+/// How often operands are looked at before they are evaluated, so that a long row of steps costs no
+/// more than in proportion to its length.
+const PATIENCE: usize = 40;
+
+impl Open {
+    fn one(operand: Operand, bounds: Bounds) -> Open {
+        let (operands, expression) = (vec![(operand, bounds)], Expression::Leaf(0));
+        Open { operands, expression, bounds, looked: 1 }
+    }
+
+    fn nothing() -> Open {
+        let (operands, expression) = (vec![], Expression::Union(vec![]));
+        Open { operands, expression, bounds: Bounds::EMPTY, looked: 0 }
+    }
+
+    fn stage(self) -> Stage {
+        let operands = self.operands.into_iter().map(|o| o.0).collect();
+        Stage { operands, expression: self.expression }
+    }
+
+    fn with(mut self, rule: Rule, other: Open) -> Open {
+        let shift = self.operands.len() as u32;
+        let parts = vec![self.expression, other.expression.shifted(shift)];
+        self.expression = match rule {
+            Rule::Union => Expression::Union(parts),
+            Rule::Intersection => Expression::Intersection(parts),
+            Rule::Difference => Expression::Difference(parts),
+        };
+        self.bounds = match rule {
+            Rule::Union => self.bounds.with(other.bounds),
+            Rule::Intersection => self.bounds.common(other.bounds),
+            Rule::Difference => self.bounds,
+        };
+        self.looked += other.looked + self.operands.len() + other.operands.len();
+        self.operands.extend(other.operands);
+        self
+    }
+}
+
+/// How two parts go together.
+#[derive(Clone, Copy)]
+enum Rule {
+    Union,
+    Intersection,
+    Difference,
+}
+
+impl Schedule<'_> {
+    fn part(&mut self, expression: &Expression) -> Open {
+        deeper(|| match expression {
+            Expression::Leaf(leaf) => Open::one(Operand::Leaf(*leaf), self.boxes[*leaf as usize]),
+            Expression::Union(parts) => self.all(Rule::Union, parts),
+            Expression::Intersection(parts) => self.all(Rule::Intersection, parts),
+            Expression::Difference(parts) => match parts.split_first() {
+                None => Open::nothing(),
+                Some((first, rest)) => {
+                    let first = self.part(first);
+                    if rest.is_empty() {
+                        return first;
+                    }
+                    let rest = self.all(Rule::Union, rest);
+                    self.join(Rule::Difference, first, rest)
+                }
+            },
+        })
+    }
+
+    /// Parts of which any or all count, joined where they are near to each other first.
+    fn all(&mut self, rule: Rule, parts: &[Expression]) -> Open {
+        let open = parts.iter().map(|part| self.part(part)).collect();
+        self.halves(rule, open)
+    }
+
+    fn halves(&mut self, rule: Rule, mut parts: Vec<Open>) -> Open {
+        if parts.len() < 2 {
+            return parts.pop().unwrap_or_else(Open::nothing);
+        }
+        let axis = widest(parts.iter().map(|part| part.bounds));
+        parts.sort_by_key(|part| part.bounds.middle(axis));
+        let upper = parts.split_off(parts.len() / 2);
+        let lower = self.halves(rule, parts);
+        let upper = self.halves(rule, upper);
+        self.join(rule, lower, upper)
+    }
+
+    /// Joins two parts; what would be crowded is evaluated first.
+    fn join(&mut self, rule: Rule, a: Open, b: Open) -> Open {
+        let count = a.operands.len() + b.operands.len();
+        let weary = a.looked + b.looked > PATIENCE * count;
+        let boxes = a.operands.iter().chain(&b.operands).map(|o| o.1);
+        if weary || is_crowded(boxes.collect()) {
+            let (a, b) = (self.settled(a), self.settled(b));
+            return a.with(rule, b);
+        }
+        a.with(rule, b)
+    }
+
+    /// Evaluates a part in a stage of its own.
+    fn settled(&mut self, part: Open) -> Open {
+        if part.operands.len() < 2 {
+            return part;
+        }
+        let bounds = part.bounds;
+        self.done.push(part.stage());
+        Open::one(Operand::Stage(self.done.len() as u32 - 1), bounds)
+    }
+}
+
+/// Whether so many boxes overlap in one place that one arrangement of what is in them does not pay.
+fn is_crowded(boxes: Vec<Bounds>) -> bool {
+    let mut near: Vec<Vec<u32>> = vec![vec![]; boxes.len()];
+    Hierarchy::new(boxes.iter().copied()).own_pairs(|a, b| {
+        if boxes[a as usize].overlaps(&boxes[b as usize]) {
+            near[a as usize].push(b);
+            near[b as usize].push(a);
+        }
+    });
+    near.iter_mut().for_each(|list| list.sort_unstable());
+    let mut triples = vec![0; near.len()];
+    for (a, list) in (0u32..).zip(&near) {
+        for &b in list.iter().filter(|&&b| b > a) {
+            let other = &near[b as usize];
+            let (short, long) =
+                if list.len() < other.len() { (list, other) } else { (other, list) };
+            for &c in short.iter().filter(|&c| *c > b && long.binary_search(c).is_ok()) {
+                for one in [a, b, c] {
+                    triples[one as usize] += 1;
+                    if triples[one as usize] > CROWD {
+                        return true;
+                    }
+                }
+            }
+        }
+    }
+    false
+}
