@@ -149,12 +149,14 @@ fn add_cells(
             Flat::Exact(plane) => Some((plane, !up)),
             Flat::Source(..) => None,
         };
-        result.push(source(run[0].0, up, complex, facets), run.len(), plane, space);
+        let source = source(run[0].0, &boundary, complex, facets);
+        result.push(source, run.len(), plane, space);
     }
 }
 
 /// The face that a cell of the result is made of.
-fn source(cell: u32, up: bool, complex: &Complex, facets: &Facets) -> Source {
+fn source(cell: u32, boundary: &Boundary, complex: &Complex, facets: &Facets) -> Source {
+    let up = boundary.up[cell as usize].expect("a cell of the result has its outside on one side");
     let cover = complex.cover(cell);
     let &(facet, count) = cover.iter().find(|c| (c.1 > 0) == up).unwrap_or(&cover[0]);
     let source = facets.list()[facet as usize].source;
