@@ -57,6 +57,12 @@ impl Plane {
         Some((Plane { normal, offset: dot(normal, point) }, *first < 0))
     }
 
+    /// The plane through a lattice point across a vector between lattice points that is not zero. Its
+    /// normal is that vector; it is not reduced, so equal planes may differ.
+    pub fn across(normal: Int3, point: Int3) -> Plane {
+        Plane { normal, offset: dot(normal, point) }
+    }
+
     /// The sign of a lattice point: 1 where the normal points, 0 on the plane, else -1.
     pub fn side(&self, point: Int3) -> i32 {
         (dot(self.normal, point) - self.offset).signum() as i32

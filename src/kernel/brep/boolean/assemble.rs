@@ -35,7 +35,7 @@ impl Assembly<'_> {
     pub fn mesh(&self) -> PolyMesh {
         let mut labels = Labels::new(self.plan, self.facets);
         let boundary = Boundary::of(self.complex, self.sides, &mut labels);
-        let outline = Outline::of(&boundary, self.borders, self.space);
+        let outline = Outline::of(&boundary, self.borders, self.complex);
         let dropped = outline.dropped((&boundary, self.borders), self.complex, self.space);
         let mut mesh = PolyMesh::default();
         let (mut loops, standing) = self.corners(&boundary, &outline, &dropped, &mut mesh);

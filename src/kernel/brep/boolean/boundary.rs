@@ -16,6 +16,8 @@ use super::{
 pub(super) struct Boundary {
     /// Where each half-edge starts.
     pub origin: Vec<u32>,
+    /// The place of that point among those of the complex.
+    pub at: Vec<u32>,
     /// What follows it around its cell.
     pub next: Vec<u32>,
     /// The half-edge that runs back along the same edge; [`NONE`] where a patch borders.
@@ -42,13 +44,13 @@ impl Boundary {
         let cells = 0..complex.first_patch;
         let keys: Vec<Option<Key>> =
             cells.map(|c| up[c as usize].map(|up| labels.key(complex, c, up))).collect();
-        let (origin, next) = directed(complex, &up);
+        let (origin, at, next) = directed(complex, &up);
         let (mut twin, crowded) = twins(complex, sides, &up);
         let polygon = polygons(complex, &twin, &keys);
         for around in &crowded {
             link_crowded(around, complex, sides, &polygon, &mut twin);
         }
-        Boundary { origin, next, twin, polygon, keys, up, touches: !crowded.is_empty() }
+        Boundary { origin, at, next, twin, polygon, keys, up, touches: !crowded.is_empty() }
     }
 
     /// Whether a half-edge runs inside a merged polygon.
@@ -64,24 +66,27 @@ impl Boundary {
     }
 }
 
-/// Origins and successors of half-edges, turned around in cells that face down.
-fn directed(complex: &Complex, up: &[Option<bool>]) -> (Vec<u32>, Vec<u32>) {
+/// Origins, their places, and successors of half-edges, turned around in cells that face down.
+fn directed(complex: &Complex, up: &[Option<bool>]) -> (Vec<u32>, Vec<u32>, Vec<u32>) {
     let count = complex.halves.len();
-    let (mut origin, mut next) = (vec![NONE; count], vec![NONE; count]);
+    let [mut origin, mut at, mut next] = [0; 3].map(|_| vec![NONE; count]);
     for (number, half) in (0u32..).zip(&complex.halves) {
         match up[half.cell as usize] {
             Some(true) => {
                 origin[number as usize] = half.origin;
+                at[number as usize] = half.at;
                 next[number as usize] = half.next;
             }
             Some(false) => {
-                origin[number as usize] = complex.target(number);
+                let target = &complex.halves[half.next as usize];
+                origin[number as usize] = target.origin;
+                at[number as usize] = target.at;
                 next[half.next as usize] = number;
             }
             None => {}
         }
     }
-    (origin, next)
+    (origin, at, next)
 }
 
 /// The links along edges with two half-edges of the result, and the half-edges along all others, in

@@ -21,6 +21,8 @@ struct Cell {
 pub(super) struct Half {
     /// Where it starts.
     pub origin: u32,
+    /// The place of that point among those of the complex.
+    pub at: u32,
     /// What follows around the cell.
     pub next: u32,
     /// The plane that, with the cell's, holds the line; [`NONE`] between lattice points of untouched
@@ -33,7 +35,6 @@ pub(super) struct Half {
 }
 
 /// All cells of an operation.
-#[derive(Default)]
 pub(super) struct Complex {
     cells: Vec<Cell>,
     /// Facets over each cell, and how often: positive when the facet faces up.
@@ -41,6 +42,9 @@ pub(super) struct Complex {
     /// The half-edges of all cells, a cell's together.
     pub halves: Vec<Half>,
     loop_start: u32,
+    /// The points met, and one more than the place of each of them here.
+    points: Vec<u32>,
+    places: Vec<u32>,
     /// The cell that stands for the first patch; those of the others follow to the end.
     pub first_patch: u32,
     /// The half-edges along every edge: `incident[edge_ends[e-1]..edge_ends[e]]`.
@@ -49,6 +53,38 @@ pub(super) struct Complex {
 }
 
 impl Complex {
+    /// A complex without cells, over some of so many points. More may come.
+    pub fn new(points: usize) -> Complex {
+        Complex {
+            cells: vec![],
+            covers: vec![],
+            halves: vec![],
+            loop_start: 0,
+            points: vec![],
+            places: vec![0; points],
+            first_patch: 0,
+            incident: vec![],
+            edge_ends: vec![],
+        }
+    }
+
+    /// The number of points met.
+    pub fn point_count(&self) -> usize {
+        self.points.len()
+    }
+
+    fn place(&mut self, point: u32) -> u32 {
+        if point as usize >= self.places.len() {
+            self.places.resize(point as usize + 1, 0);
+        }
+        let place = &mut self.places[point as usize];
+        if *place == 0 {
+            self.points.push(point);
+            *place = self.points.len() as u32;
+        }
+        *place - 1
+    }
+
     /// Begins a cell; its loops follow.
     pub fn begin_cell(&mut self, plane: u32, cover: impl Iterator<Item = (u32, i32)>) {
         self.covers.extend(cover);
@@ -58,7 +94,8 @@ impl Complex {
     /// Adds a step of a loop.
     pub fn push_half(&mut self, origin: u32, support: u32) {
         let (next, cell) = (self.halves.len() as u32 + 1, self.cells.len() as u32 - 1);
-        self.halves.push(Half { origin, next, support, cell, edge: 0 });
+        let at = self.place(origin);
+        self.halves.push(Half { origin, at, next, support, cell, edge: 0 });
     }
 
     /// Closes a loop.
@@ -130,11 +167,12 @@ impl Complex {
 
     /// Finds the half-edges that run along the same edges: those with the same smaller point are
     /// brought together by counting, and sorted by their larger point.
-    pub fn finish(&mut self, points: usize) {
-        let ends: Vec<(u32, u32)> = (0..self.halves.len() as u32)
-            .map(|half| (self.halves[half as usize].origin, self.target(half)))
-            .map(|(a, b)| (a.min(b), a.max(b)))
-            .collect();
+    pub fn finish(&mut self) {
+        let points = self.points.len();
+        let target = |half: &Half| self.halves[half.next as usize].at;
+        let ends = self.halves.iter().map(|half| (half.at, target(half)));
+        let ends: Vec<(u32, u32)> = ends.map(|(a, b)| (a.min(b), a.max(b))).collect();
+        self.places = vec![];
         let mut fill = vec![0u32; points + 1];
         ends.iter().for_each(|&(low, _)| fill[low as usize + 1] += 1);
         (0..points).for_each(|i| fill[i + 1] += fill[i]);

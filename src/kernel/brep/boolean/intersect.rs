@@ -9,7 +9,7 @@ use std::cmp::Ordering;
 use super::{
     facet::Facets,
     hierarchy::{Bounds, Hierarchy},
-    space::{NONE, Space, main_axis},
+    space::{NEAR, NONE, Offset, Space, main_axis},
     union_find::Sets,
 };
 
@@ -107,8 +107,23 @@ fn extra_points(facets: &Facets, traces: &mut Vec<Trace>) {
 /// Reused lists.
 #[derive(Default)]
 struct Scratch {
-    sides: [Vec<i32>; 2],
+    offsets: [Vec<Offset>; 2],
+    crossings: [Vec<Crossing>; 2],
     events: [Vec<Event>; 2],
+}
+
+/// Where a facet's boundary meets a line, not yet found: at a corner, or inside an edge.
+#[derive(Clone, Copy, Debug)]
+struct Crossing {
+    /// The corner, or the ends of the edge.
+    ends: (u32, u32),
+    /// The support of the edge.
+    support: u32,
+    /// Between which coordinates along the main axis of the line it is.
+    range: (f64, f64),
+    /// What changes beyond it.
+    above: bool,
+    below: bool,
 }
 
 /// A point where a facet's boundary meets a line, and what changes beyond it.
@@ -137,8 +152,8 @@ fn compare(
         meetings.grouped[g as usize] = true;
         return;
     }
-    let [sides_f, sides_g] = &mut scratch.sides;
-    if !straddles(f, q, facets, space, sides_f) || !straddles(g, p, facets, space, sides_g) {
+    let [offsets_f, offsets_g] = &mut scratch.offsets;
+    if !straddles(f, q, facets, space, offsets_f) || !straddles(g, p, facets, space, offsets_g) {
         return;
     }
     let line = space.line(p, q);
@@ -146,60 +161,147 @@ fn compare(
         return;
     }
     let axis = main_axis(line);
-    let [events_f, events_g] = &mut scratch.events;
-    collect(f, q, facets, space, sides_f, events_f);
-    collect(g, p, facets, space, sides_g, events_g);
-    sort(events_f, axis, space);
-    sort(events_g, axis, space);
+    let [crossings_f, crossings_g] = &mut scratch.crossings;
+    collect(f, axis, facets, space, offsets_f, crossings_f);
+    collect(g, axis, facets, space, offsets_g, crossings_g);
+    let hull = |crossings: &[Crossing]| {
+        let ranges = crossings.iter().map(|c| c.range);
+        ranges.reduce(|all, range| (all.0.min(range.0), all.1.max(range.1))).unwrap_or((1.0, 0.0))
+    };
+    let (hull_f, hull_g) = (hull(crossings_f), hull(crossings_g));
+    if hull_f.1 < hull_g.0 || hull_g.1 < hull_f.0 {
+        return;
+    }
     let (owner_f, owner_g) = (facets.list()[f as usize].owner, facets.list()[g as usize].owner);
-    overlay(events_f, events_g, axis, space, |a, b| {
+    let mut leave = |a, b| {
         meetings.traces.push(Trace { facet: f, a, b, support: q, owner: owner_g });
         meetings.traces.push(Trace { facet: g, a, b, support: p, owner: owner_f });
-    });
+    };
+    if let Some([from, to]) = between(crossings_f, crossings_g) {
+        let mut point = |from_f: bool, crossing: Crossing| {
+            let (own, other) = if from_f { (p, q) } else { (q, p) };
+            crossing.point(own, other, space)
+        };
+        let (a, b) = (point(from.0, from.1), point(to.0, to.1));
+        leave(a, b);
+        return;
+    }
+    let [events_f, events_g] = &mut scratch.events;
+    events(crossings_f, (p, q), axis, space, events_f);
+    events(crossings_g, (q, p), axis, space, events_g);
+    overlay(events_f, events_g, axis, space, leave);
 }
 
-/// Fills in the sides of a facet's corners to a plane; whether the plane meets the facet.
-fn straddles(facet: u32, plane: u32, facets: &Facets, space: &Space, sides: &mut Vec<i32>) -> bool {
-    sides.clear();
-    let corners = facets.loops(facet).flatten();
-    sides.extend(corners.map(|&corner| space.side(corner, plane)));
-    !(sides.iter().all(|&s| s > 0) || sides.iter().all(|&s| s < 0))
-}
-
-/// The points where a facet's boundary meets a plane.
-fn collect(
+/// Fills in how far a facet's corners are from a plane; whether the plane meets the facet.
+fn straddles(
     facet: u32,
     plane: u32,
     facets: &Facets,
-    space: &mut Space,
-    sides: &[i32],
-    events: &mut Vec<Event>,
+    space: &Space,
+    offsets: &mut Vec<Offset>,
+) -> bool {
+    offsets.clear();
+    let corners = facets.loops(facet).flatten();
+    offsets.extend(corners.map(|&corner| space.offset(corner, plane)));
+    !(offsets.iter().all(|o| o.sign > 0) || offsets.iter().all(|o| o.sign < 0))
+}
+
+/// Finds where a facet's boundary meets a plane, given how far its corners are from it.
+fn collect(
+    facet: u32,
+    axis: usize,
+    facets: &Facets,
+    space: &Space,
+    offsets: &[Offset],
+    crossings: &mut Vec<Crossing>,
 ) {
-    events.clear();
+    crossings.clear();
     let mut start = 0;
-    let own = facets.known_plane(facet).map_or(NONE, |known| known.0);
     for (corners, supports) in facets.supported_loops(facet) {
         let count = corners.len();
         for k in 0..count {
             let next = (k + 1) % count;
             let (a, b) = (corners[k], corners[next]);
-            let (s, t) = (sides[start + k], sides[start + next]);
-            if s == 0 {
-                events.push(Event { point: a, above: false, below: false });
+            let (s, t) = (offsets[start + k], offsets[start + next]);
+            let at = |corner: u32, above, below| {
+                let here = space.near(corner)[axis];
+                let range = (here - NEAR, here + NEAR);
+                Crossing { ends: (corner, corner), support: NONE, range, above, below }
+            };
+            if s.sign == 0 {
+                crossings.push(at(a, false, false));
             }
-            let (above, below) = ((s > 0) != (t > 0), (s < 0) != (t < 0));
+            let (above, below) = ((s.sign > 0) != (t.sign > 0), (s.sign < 0) != (t.sign < 0));
             if !above && !below {
                 continue;
             }
-            let point = match (s, t) {
-                (0, _) => a,
-                (_, 0) => b,
-                _ => space.pierce((a, b), (own, supports[k]), plane),
-            };
-            events.push(Event { point, above, below });
+            crossings.push(match (s.sign, t.sign) {
+                (0, _) => at(a, above, below),
+                (_, 0) => at(b, above, below),
+                _ => {
+                    let range = pierced((space.near(a)[axis], s), (space.near(b)[axis], t));
+                    Crossing { ends: (a, b), support: supports[k], range, above, below }
+                }
+            });
         }
         start += count;
     }
+}
+
+/// Between which coordinates an edge meets a plane, given a coordinate of each end and how far the
+/// ends, on different sides, are from the plane.
+fn pierced((a, s): (f64, Offset), (b, t): (f64, Offset)) -> (f64, f64) {
+    let (height, error) = ((s.value - t.value).abs(), s.error + t.error);
+    if height <= 4.0 * error {
+        return (a.min(b) - NEAR, a.max(b) + NEAR);
+    }
+    let at = a + (b - a) * (s.value / (s.value - t.value));
+    let margin = (b - a).abs() * (2.0 * error / height) + 4.0 * NEAR;
+    (at - margin, at + margin)
+}
+
+/// The common part of two facets on their line, if each runs through from one crossing to another
+/// and their order is certain: its ends, each with whether it is a crossing of the first facet.
+fn between(f: &[Crossing], g: &[Crossing]) -> Option<[(bool, Crossing); 2]> {
+    let ends = |crossings: &[Crossing]| match *crossings {
+        [a, b] if a.above && a.below && b.above && b.below => {
+            let (low, high) = if a.range.0 < b.range.0 { (a, b) } else { (b, a) };
+            (low.range.1 < high.range.0).then_some((low, high))
+        }
+        _ => None,
+    };
+    let ((f_low, f_high), (g_low, g_high)) = (ends(f)?, ends(g)?);
+    let before = |a: Crossing, b: Crossing| {
+        let certain = a.range.1 < b.range.0 || b.range.1 < a.range.0;
+        certain.then_some(a.range.0 < b.range.0)
+    };
+    let from = if before(f_low, g_low)? { (false, g_low) } else { (true, f_low) };
+    let to = if before(f_high, g_high)? { (true, f_high) } else { (false, g_high) };
+    (from.1.range.1 < to.1.range.0).then_some([from, to])
+}
+
+impl Crossing {
+    /// The point where it is, on a facet in the plane `own` and on the plane `other`.
+    fn point(&self, own: u32, other: u32, space: &mut Space) -> u32 {
+        let (a, b) = self.ends;
+        if a == b { a } else { space.pierce((a, b), (own, self.support), other) }
+    }
+}
+
+/// The points of crossings on a facet in the first plane with the second one, in order along an axis.
+fn events(
+    crossings: &[Crossing],
+    (own, other): (u32, u32),
+    axis: usize,
+    space: &mut Space,
+    events: &mut Vec<Event>,
+) {
+    events.clear();
+    events.extend(crossings.iter().map(|crossing| {
+        let &Crossing { above, below, .. } = crossing;
+        Event { point: crossing.point(own, other, space), above, below }
+    }));
+    sort(events, axis, space);
 }
 
 /// Sorts events along an axis and makes one of all at the same point.

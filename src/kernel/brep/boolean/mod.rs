@@ -42,6 +42,7 @@ mod classify;
 mod expression;
 mod facet;
 mod frame;
+mod graph;
 mod hierarchy;
 mod intersect;
 mod lattice;

@@ -6,36 +6,65 @@
 use std::cmp::Ordering;
 
 use super::{
-    arrange::{Edge, Graph},
+    graph::{Edge, Graph},
     hierarchy::{Bounds, Hierarchy},
     space::Space,
     union_find::Sets,
 };
 
 /// The cells of an arrangement; number 0 is the unbounded one.
+#[derive(Default)]
 pub(super) struct Cells {
-    /// The walks that bound each cell.
-    pub walks: Vec<Vec<u32>>,
     /// The cell of each walk.
-    pub of_walk: Vec<u32>,
+    of_walk: Vec<u32>,
+    /// The walks that bound each cell: one past the last of those before it and its own.
+    walks: Vec<u32>,
+    ends: Vec<u32>,
 }
 
 impl Cells {
-    /// The half-edges around a cell.
-    pub fn halves(&self, cell: usize, graph: &Graph) -> Vec<u32> {
-        let mut halves = vec![];
-        for &walk in &self.walks[cell] {
-            let start = graph.walks[walk as usize];
-            let mut half = start;
-            loop {
-                halves.push(half);
-                half = graph.next[half as usize];
-                if half == start {
-                    break;
-                }
-            }
+    /// The number of cells.
+    pub fn count(&self) -> usize {
+        self.ends.len() - 1
+    }
+
+    /// The walks that bound a cell.
+    pub fn walks(&self, cell: usize) -> &[u32] {
+        &self.walks[self.ends[cell] as usize..self.ends[cell + 1] as usize]
+    }
+
+    /// The cell on the left of a half-edge.
+    pub fn of_half(&self, half: u32, graph: &Graph) -> u32 {
+        self.of_walk[graph.walk[half as usize] as usize]
+    }
+
+    /// Groups the walks of an arrangement into cells.
+    pub fn of(&mut self, graph: &Graph, space: &Space) {
+        let parts = parts(graph, space);
+        let Cells { of_walk, walks, ends } = self;
+        of_walk.clear();
+        of_walk.resize(graph.walks.len(), u32::MAX);
+        parts.iter().for_each(|part| of_walk[part.outside as usize] = 0);
+        let mut count = 1;
+        for cell in of_walk.iter_mut().filter(|c| **c == u32::MAX) {
+            *cell = count;
+            count += 1;
         }
-        halves
+        if parts.len() > 1 {
+            nest(parts, of_walk, graph, space);
+        }
+        ends.clear();
+        ends.resize(count as usize + 2, 0);
+        of_walk.iter().for_each(|&cell| ends[cell as usize + 2] += 1);
+        (2..ends.len()).for_each(|i| ends[i] += ends[i - 1]);
+        walks.clear();
+        walks.resize(of_walk.len(), 0);
+        for (walk, &cell) in (0u32..).zip(&*of_walk) {
+            let slot = &mut ends[cell as usize + 1];
+            walks[*slot as usize] = walk;
+            *slot += 1;
+        }
+        ends.pop();
     }
 }
 
@@ -47,31 +76,14 @@ struct Part {
     outside: u32,
 }
 
-/// Groups the walks of an arrangement into cells.
-pub(super) fn cells(graph: &Graph, space: &Space) -> Cells {
-    let mut parts = parts(graph, space);
+/// Finds in which cell each part lies.
+fn nest(mut parts: Vec<Part>, of_walk: &mut [u32], graph: &Graph, space: &Space) {
     parts.sort_by(|p, q| order(p.first, q.first, graph, space));
-    let mut of_walk = vec![u32::MAX; graph.walks.len()];
+    let below = Below::new(graph, space);
     for part in &parts {
-        of_walk[part.outside as usize] = 0;
+        let around = below.walk(part.first, graph, space);
+        of_walk[part.outside as usize] = around.map_or(0, |walk| of_walk[walk as usize]);
     }
-    let mut count = 1;
-    for cell in of_walk.iter_mut().filter(|c| **c == u32::MAX) {
-        *cell = count;
-        count += 1;
-    }
-    if parts.len() > 1 {
-        let below = Below::new(graph, space);
-        for part in &parts {
-            let around = below.walk(part.first, graph, space);
-            of_walk[part.outside as usize] = around.map_or(0, |walk| of_walk[walk as usize]);
-        }
-    }
-    let mut walks = vec![vec![]; count as usize];
-    for (walk, &cell) in (0u32..).zip(&of_walk) {
-        walks[cell as usize].push(walk);
-    }
-    Cells { walks, of_walk }
 }
 
 /// The order of points from left to right, then upwards.
@@ -80,7 +92,14 @@ fn order(p: u32, q: u32, graph: &Graph, space: &Space) -> Ordering {
     space.compare(p, q, x).then_with(|| space.compare(p, q, y))
 }
 
+/// The connected parts. By Euler's formula there are half as many as points and walks exceed edges.
 fn parts(graph: &Graph, space: &Space) -> Vec<Part> {
+    let count = (graph.points.len() + graph.walks.len() - graph.edges.len()) / 2;
+    let least = |p: u32, q: u32| if order(p, q, graph, space).is_lt() { p } else { q };
+    if count == 1 {
+        let first = graph.points.iter().copied().reduce(least);
+        return first.map(|first| Part::from(first, graph, space)).into_iter().collect();
+    }
     let mut sets = Sets::new(graph.points.len());
     for edge in &graph.edges {
         sets.join(graph.place(edge.a) as u32, graph.place(edge.b) as u32);
@@ -88,19 +107,20 @@ fn parts(graph: &Graph, space: &Space) -> Vec<Part> {
     let mut first: Vec<Option<u32>> = vec![None; graph.points.len()];
     for (place, &point) in (0u32..).zip(&graph.points) {
         let slot = &mut first[sets.find(place) as usize];
-        if slot.is_none_or(|best| order(point, best, graph, space) == Ordering::Less) {
-            *slot = Some(point);
-        }
+        *slot = Some(slot.map_or(point, |best| least(best, point)));
     }
-    first
-        .into_iter()
-        .flatten()
-        .map(|first| {
-            // All its edges lead to the right; left of the steepest one is the outside.
-            let fan = graph.fan(graph.place(first));
-            Part { first, outside: graph.walk[fan[fan.len() - 1] as usize] }
-        })
-        .collect()
+    first.into_iter().flatten().map(|first| Part::from(first, graph, space)).collect()
+}
+
+impl Part {
+    /// The part with this first point. All edges there lead to the right; left of the steepest one is
+    /// the outside.
+    fn from(first: u32, graph: &Graph, space: &Space) -> Part {
+        let fan = graph.fan(graph.place(first));
+        let steepest = fan.max_by(|&g, &h| graph.by_angle(g, h, space));
+        let outside = graph.walk[steepest.expect("a point has edges") as usize];
+        Part { first, outside }
+    }
 }
 
 /// Finds what lies straight below a point.
@@ -150,7 +170,7 @@ struct Span {
 impl Span {
     /// `None` for an upright edge.
     fn of(edge: u32, graph: &Graph, space: &Space) -> Option<Span> {
-        let Edge { a, b, .. } = graph.edges[edge as usize];
+        let &Edge { a, b, .. } = &graph.edges[edge as usize];
         match space.compare(a, b, graph.axes[0]) {
             Ordering::Less => Some(Span { half: 2 * edge, left: a, right: b }),
             Ordering::Greater => Some(Span { half: 2 * edge + 1, left: b, right: a }),
@@ -168,7 +188,7 @@ impl Span {
     /// the plane's normal and m the support's, is where m points away from.
     fn side(&self, point: u32, graph: &Graph, space: &Space) -> i32 {
         let edge = &graph.edges[self.half as usize / 2];
-        let along = edge.along == (self.half & 1 == 0);
+        let along = graph.is_along(edge, space) == (self.half & 1 == 0);
         let side =
             if point == edge.a || point == edge.b { 0 } else { space.side(point, edge.support) };
         if along { -side } else { side }

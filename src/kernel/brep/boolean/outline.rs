@@ -35,7 +35,7 @@ impl Outline {
     /// Traces the outlines.
     ///
     /// `borders` are the points at which patches border: only one fan is there, and it stays.
-    pub fn of(boundary: &Boundary, borders: &Borders, space: &Space) -> Outline {
+    pub fn of(boundary: &Boundary, borders: &Borders, complex: &Complex) -> Outline {
         let count = boundary.twin.len();
         let mut loops = loops(boundary);
         loops.sort_by_key(|l| l.0);
@@ -55,12 +55,12 @@ impl Outline {
             }
         }
         let mut sets = Sets::new(count);
-        let mut leaving = vec![NONE; space.point_count()];
+        let mut leaving = vec![NONE; complex.point_count()];
         for half in boundary.outer() {
-            let point = boundary.origin[half as usize] as usize;
-            if borders.patch(point as u32).is_some() {
-                leaving[point] = half.min(leaving[point]);
-                sets.join(half, leaving[point]);
+            if borders.patch(boundary.origin[half as usize]).is_some() {
+                let slot = &mut leaving[boundary.at[half as usize] as usize];
+                *slot = half.min(*slot);
+                sets.join(half, *slot);
             } else {
                 sets.join(half, outline.next[boundary.twin[half as usize] as usize]);
             }
@@ -83,13 +83,13 @@ impl Outline {
             leaving[self.vertex[half as usize] as usize] += 1;
         }
         // Where several vertices stand in one point the result touches itself: all of them stay.
-        let mut standing = vec![0u32; space.point_count()];
+        let mut standing = vec![0u32; complex.point_count()];
         for half in boundary.outer().filter(|&h| self.vertex[h as usize] == h) {
-            standing[boundary.origin[half as usize] as usize] += 1;
+            standing[boundary.at[half as usize] as usize] += 1;
         }
         let alone = |half: u32| {
-            let point = boundary.origin[half as usize];
-            standing[point as usize] == 1 && borders.patch(point).is_none()
+            let [point, at] = [&boundary.origin, &boundary.at].map(|list| list[half as usize]);
+            standing[at as usize] == 1 && borders.patch(point).is_none()
         };
         let mut dropped = vec![false; boundary.twin.len()];
         let straight = Straight { outline: self, boundary, complex, space };

@@ -31,7 +31,7 @@ struct Point {
 
 /// How far `near` may be from the point, in steps: numerators and denominators are converted with a
 /// relative error of 2^-51 and divided, coordinates are below 2^29, so 2^-20 is ample.
-const NEAR: f64 = 1.0 / (1u64 << 20) as f64;
+pub(super) const NEAR: f64 = 1.0 / (1u64 << 20) as f64;
 
 /// Relative error of the doubles in a plane equation, with room for the sums.
 const PLANE_ERROR: f64 = 8.0 * f64::EPSILON;
@@ -39,6 +39,17 @@ const PLANE_ERROR: f64 = 8.0 * f64::EPSILON;
 /// Shift of the grid that points are looked up in, so that whole coordinates, the most frequent
 /// ones, are far from the borders of cells.
 const GRID_SHIFT: f64 = 0.3;
+
+/// How far a point is from a plane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Offset {
+    /// 1 where the normal points, 0 on the plane, else -1; exactly.
+    pub sign: i32,
+    /// The value of the plane's equation, nearly.
+    pub value: f64,
+    /// How wrong the value may be.
+    pub error: f64,
+}
 
 /// All planes and points of an operation.
 #[derive(Default)]
@@ -58,12 +69,18 @@ pub(super) struct Space {
 impl Space {
     /// The number of a plane.
     pub fn add_plane(&mut self, plane: Plane) -> u32 {
-        let planes = &mut self.planes;
-        *self.plane_numbers.entry(plane).or_insert_with(|| {
-            let (normal, offset) = (plane.normal.map(|c| c as f64), plane.offset as f64);
-            planes.push(Stored { plane, normal, offset });
-            planes.len() as u32 - 1
-        })
+        if let Some(&known) = self.plane_numbers.get(&plane) {
+            return known;
+        }
+        let number = self.store_plane(plane);
+        self.plane_numbers.insert(plane, number);
+        number
+    }
+
+    fn store_plane(&mut self, plane: Plane) -> u32 {
+        let (normal, offset) = (plane.normal.map(|c| c as f64), plane.offset as f64);
+        self.planes.push(Stored { plane, normal, offset });
+        self.planes.len() as u32 - 1
     }
 
     /// The plane of a number.
@@ -113,7 +130,14 @@ impl Space {
         if let Some(&point) = self.meets.get(&planes) {
             return Some(point);
         }
-        let exact = Meet::of(self.plane(a), self.plane(b), self.plane(c))?;
+        let point = self.met(planes)?;
+        self.meets.insert(planes, point);
+        Some(point)
+    }
+
+    fn met(&mut self, planes: [u32; 3]) -> Option<u32> {
+        let [a, b, c] = planes.map(|plane| self.plane(plane));
+        let exact = Meet::of(a, b, c)?;
         let mut near = exact.approximate();
         for (axis, c) in near.iter_mut().enumerate() {
             let whole = c.round();
@@ -121,9 +145,7 @@ impl Space {
                 *c = whole;
             }
         }
-        let point = self.known_at(near, planes).unwrap_or_else(|| self.store(near, planes));
-        self.meets.insert(planes, point);
-        Some(point)
+        Some(self.known_at(near, planes).unwrap_or_else(|| self.store(near, planes)))
     }
 
     /// The stored point that lies on all three planes, among those near the place.
@@ -166,9 +188,14 @@ impl Space {
 
     /// The sign of a point to a plane: 1 where its normal points, 0 on it, else -1.
     pub fn side(&self, point: u32, plane: u32) -> i32 {
+        self.offset(point, plane).sign
+    }
+
+    /// How far, in lengths of its normal, a point is from a plane.
+    pub fn offset(&self, point: u32, plane: u32) -> Offset {
         let (p, stored) = (&self.points[point as usize], &self.planes[plane as usize]);
         if p.planes.contains(&plane) {
-            return 0;
+            return Offset { sign: 0, value: 0.0, error: 0.0 };
         }
         let (mut value, mut size, mut slope) = (-stored.offset, stored.offset.abs(), 0.0);
         for axis in 0..3 {
@@ -177,13 +204,16 @@ impl Space {
             size += term.abs();
             slope += stored.normal[axis].abs();
         }
-        if value.abs() > size * PLANE_ERROR + slope * NEAR {
-            return if value > 0.0 { 1 } else { -1 };
+        let error = size * PLANE_ERROR + slope * NEAR;
+        if value.abs() > error {
+            return Offset { sign: if value > 0.0 { 1 } else { -1 }, value, error };
         }
-        if p.planes[0] == NONE {
-            return stored.plane.side(p.near.map(|c| c as i64));
-        }
-        stored.plane.side_of(&self.exact(point))
+        let sign = if p.planes[0] == NONE {
+            stored.plane.side(p.near.map(|c| c as i64))
+        } else {
+            stored.plane.side_of(&self.exact(point))
+        };
+        Offset { sign, value, error }
     }
 
     /// Compares one coordinate of two points.
@@ -226,11 +256,10 @@ impl Space {
         let d = minus(q, p);
         let main = (0..3).max_by_key(|&i| (d[i].abs(), 2 - i)).unwrap_or(0);
         let planes = [(main + 1) % 3, (main + 2) % 3].map(|other| {
-            let mut normal = [0i128; 3];
-            normal[other] = i128::from(d[main]);
-            normal[main] = -i128::from(d[other]);
-            let (plane, _) = Plane::through(normal, p).expect("the points differ");
-            self.add_plane(plane)
+            let mut normal = [0; 3];
+            (normal[other], normal[main]) = (d[main], -d[other]);
+            // Not reduced and not looked up: nobody asks whether it is a facet's plane.
+            self.store_plane(Plane::across(normal, p))
         });
         self.edges.insert(key, planes);
         planes
@@ -244,8 +273,7 @@ impl Space {
             let dot = |a: &[f64; 3], b: &[f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
             dot(m, n).powi(2) / dot(n, n)
         };
-        let steeper = tilt(second) < tilt(first);
-        if first == plane || (second != plane && steeper) { second } else { first }
+        if tilt(second) < tilt(first) { second } else { first }
     }
 
     /// The point where an edge meets a plane that its ends are on different sides of. The edge is in
@@ -256,7 +284,7 @@ impl Space {
             return point;
         }
         let [first, second] = if support == NONE { self.edge_planes(a, b) } else { [own, support] };
-        let point = self.meet(first, second, plane);
+        let point = self.met([first, second, plane]);
         let point = point.expect("an edge that changes sides meets the plane");
         self.pierced.insert(key, point);
         point

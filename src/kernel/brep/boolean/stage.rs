@@ -125,7 +125,7 @@ fn add_cells(
 ) {
     let mut labels = Labels::exact(plan, facets);
     let boundary = Boundary::of(complex, sides, &mut labels);
-    let outline = Outline::of(&boundary, borders, space);
+    let outline = Outline::of(&boundary, borders, complex);
     let dropped = outline.dropped((&boundary, borders), complex, space);
     for run in outline.loops.chunk_by(|a, b| a.0 == b.0) {
         for (_, halves) in run {
