@@ -3,7 +3,7 @@
 use glam::DVec3;
 use thiserror::Error;
 
-use crate::geom::{Placement, PolyMesh};
+use crate::geom::{FaceRef, Placement, PolyMesh};
 
 /// A closed, consistently oriented 2-manifold of planar polygons, possibly empty.
 ///
@@ -71,6 +71,19 @@ impl Polyhedron {
         Polyhedron { mesh }
     }
 
+    /// Takes a mesh in of which only a part is new: the first `faces`, which have the first `points`.
+    /// All others come from solids as they stand, so only what meets at those points is checked.
+    pub(crate) fn seamed(mesh: PolyMesh, faces: usize, points: u32) -> Result<Polyhedron, Defect> {
+        let is_near = |face: &FaceRef<'_>| {
+            face.index() < faces || face.loops().flatten().any(|&corner| corner < points)
+        };
+        let finite = mesh.points.iter().all(|p| p.is_finite());
+        if finite && Corners::of(mesh.faces().filter(is_near), points).are_fans() {
+            return Ok(Polyhedron::trusted(mesh));
+        }
+        Polyhedron::new(mesh)
+    }
+
     /// Its boundary.
     pub fn mesh(&self) -> &PolyMesh {
         &self.mesh
@@ -95,6 +108,89 @@ impl Polyhedron {
     }
 }
 
+/// The edges of a loop: start, end, and the corner after the end.
+fn edges(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
+    let n = corners.len();
+    (0..n).map(move |i| [corners[i], corners[(i + 1) % n], corners[(i + 2) % n]])
+}
+
+/// The corners of loops, by point: at each the point before and the point after.
+struct Corners {
+    /// Where the corners of each point begin; one more at the end.
+    starts: Vec<u32>,
+    /// The point before and the point after.
+    arms: Vec<(u32, u32)>,
+}
+
+impl Corners {
+    /// The corners of some faces at points below a limit.
+    fn of<'a>(faces: impl Iterator<Item = FaceRef<'a>> + Clone, points: u32) -> Corners {
+        let all =
+            || faces.clone().flat_map(|f| f.loops()).flat_map(edges).filter(|e| e[1] < points);
+        let mut starts = vec![0u32; points as usize + 2];
+        all().for_each(|[_, point, _]| starts[point as usize + 2] += 1);
+        (1..starts.len()).for_each(|i| starts[i] += starts[i - 1]);
+        let mut arms = vec![(0, 0); starts[starts.len() - 1] as usize];
+        for [before, point, after] in all() {
+            let place = &mut starts[point as usize + 1];
+            arms[*place as usize] = (before, after);
+            *place += 1;
+        }
+        starts.pop();
+        Corners { starts, arms }
+    }
+
+    fn at(&mut self, point: u32) -> &mut [(u32, u32)] {
+        let [from, to] = [0, 1].map(|i| self.starts[point as usize + i] as usize);
+        &mut self.arms[from..to]
+    }
+
+    /// Whether the corners at every point form one fan: stepping from corner to corner over the edge
+    /// that two of them share meets each of them once.
+    fn are_fans(&mut self) -> bool {
+        (0..self.starts.len() as u32 - 1).all(|point| is_fan(point, self.at(point)))
+    }
+}
+
+/// So many corners at a point are searched one by one.
+const FEW: usize = 12;
+
+/// Whether the corners at a point form one fan.
+fn is_fan(point: u32, corners: &mut [(u32, u32)]) -> bool {
+    let Some(&first) = corners.first() else { return true };
+    let many = corners.len() > FEW;
+    if many {
+        corners.sort_unstable();
+    }
+    let (mut at, mut met) = (first, 0);
+    loop {
+        met += 1;
+        let next = if many {
+            corners.get(corners.partition_point(|c| c.0 < at.1)).filter(|c| c.0 == at.1)
+        } else {
+            corners.iter().find(|c| c.0 == at.1)
+        };
+        match next {
+            Some(_) if at.1 == point || met > corners.len() => return false,
+            Some(&next) if next == first => return met == corners.len(),
+            Some(&next) => at = next,
+            None => return false,
+        }
+    }
+}
+
+fn check(mesh: &PolyMesh) -> Result<(), Defect> {
+    if let Some(point) = mesh.points.iter().position(|p| !p.is_finite()) {
+        return Err(Defect::NotFinite { point: point as u32 });
+    }
+    if Corners::of(mesh.faces(), mesh.points.len() as u32).are_fans() {
+        return Ok(());
+    }
+    let spokes = Spokes::new(mesh);
+    check_edges(mesh, &spokes)?;
+    (0..mesh.points.len() as u32).try_for_each(|point| check_fan(&spokes, point))
+}
+
 /// An edge that leaves a point, and the corner that comes after its end in the loop.
 #[derive(Clone, Copy)]
 struct Spoke {
@@ -102,17 +198,11 @@ struct Spoke {
     follower: u32,
 }
 
-/// All directed edges, sorted by start and end.
+/// All directed edges, sorted by start and end: what is wrong with a mesh is told by them.
 struct Spokes {
     /// Where the edges of each point begin; one more at the end.
     starts: Vec<u32>,
     spokes: Vec<Spoke>,
-}
-
-/// The edges of a loop: start, end, and the corner after the end.
-fn edges(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
-    let n = corners.len();
-    (0..n).map(move |i| [corners[i], corners[(i + 1) % n], corners[(i + 2) % n]])
 }
 
 impl Spokes {
@@ -150,15 +240,6 @@ impl Spokes {
         let spokes = self.of(a);
         spokes[spokes.partition_point(|s| s.end < b)].follower
     }
-}
-
-fn check(mesh: &PolyMesh) -> Result<(), Defect> {
-    if let Some(point) = mesh.points.iter().position(|p| !p.is_finite()) {
-        return Err(Defect::NotFinite { point: point as u32 });
-    }
-    let spokes = Spokes::new(mesh);
-    check_edges(mesh, &spokes)?;
-    (0..mesh.points.len() as u32).try_for_each(|point| check_fan(&spokes, point))
 }
 
 fn check_edges(mesh: &PolyMesh, spokes: &Spokes) -> Result<(), Defect> {

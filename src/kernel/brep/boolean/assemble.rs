@@ -11,12 +11,15 @@ use super::{
     facet::Facets,
     frame::Plan,
     origins::{Key, Labels},
-    outline::Outline,
+    outline::{Loop, Outline},
     patch::{Borders, Patches},
     place::Places,
     space::{NONE, Space},
 };
-use crate::geom::PolyMesh;
+use crate::{
+    geom::PolyMesh,
+    kernel::brep::polyhedron::{Defect, Polyhedron},
+};
 
 /// What the result is assembled from.
 pub(super) struct Assembly<'a> {
@@ -31,8 +34,8 @@ pub(super) struct Assembly<'a> {
 }
 
 impl Assembly<'_> {
-    /// The mesh of the result, placed.
-    pub fn mesh(&self) -> PolyMesh {
+    /// The result, placed.
+    pub fn solid(&self) -> Result<Polyhedron, Defect> {
         let mut labels = Labels::new(self.plan, self.facets);
         let boundary = Boundary::of(self.complex, self.sides, &mut labels);
         let outline = Outline::of(&boundary, self.borders, self.complex);
@@ -48,11 +51,12 @@ impl Assembly<'_> {
             mesh.add_origin(origin);
         }
         self.add_faces(&boundary, &outline, &loops, &mut mesh);
+        let (faces, points) = (mesh.face_count(), mesh.points.len() as u32);
         carried.add_faces(&carried_origins, &mut mesh);
         if self.plan.frame.mirrors() {
             mesh.flip();
         }
-        mesh
+        Polyhedron::seamed(mesh, faces, points)
     }
 
     /// Every loop as mesh points, and for every edge a number that both its sides share; and a mesh
@@ -67,7 +71,8 @@ impl Assembly<'_> {
         let mut standing = vec![NONE; self.space.point_count()];
         let mut numbers = vec![NONE; outline.vertex.len()];
         let mut loops = vec![];
-        for (_, halves) in &outline.loops {
+        for edge in &outline.loops {
+            let halves = outline.halves(edge);
             let vertex = |half: u32| outline.vertex[half as usize] as usize;
             let kept: Vec<usize> =
                 (0..halves.len()).filter(|&i| !dropped[vertex(halves[i])]).collect();
@@ -99,14 +104,15 @@ impl Assembly<'_> {
     ) {
         let mut planes: FxHashMap<_, u32> = FxHashMap::default();
         let mut start = 0;
-        for run in outline.loops.chunk_by(|a, b| a.0 == b.0) {
-            let key: Key = boundary.keys[run[0].0 as usize].expect("a polygon is made of cells");
+        for run in outline.loops.chunk_by(|a, b| a.polygon == b.polygon) {
+            let key: Key =
+                boundary.keys[run[0].polygon as usize].expect("a polygon is made of cells");
             let plane = *planes.entry(key.plane()).or_insert_with(|| mesh.add_plane());
             let corners = loops[start..start + run.len()].iter();
             let mut corners: Vec<Vec<u32>> =
                 corners.map(|l| l.iter().map(|c| c.0).collect()).collect();
             if run.len() > 1 {
-                let outer = outer_loop(run, boundary, self.space);
+                let outer = outer_loop(run, outline, boundary, self.space);
                 corners.swap(0, outer);
             }
             mesh.push_face(&corners, plane, key.origin);
@@ -116,14 +122,15 @@ impl Assembly<'_> {
 }
 
 /// The loop that the others are holes in: the one with the greatest area along the polygon's normal.
-fn outer_loop(run: &[(u32, Vec<u32>)], boundary: &Boundary, space: &Space) -> usize {
-    let base = DVec3::from_array(space.near(boundary.origin[run[0].1[0] as usize]));
+fn outer_loop(run: &[Loop], outline: &Outline, boundary: &Boundary, space: &Space) -> usize {
+    let first = outline.halves(&run[0])[0];
+    let base = DVec3::from_array(space.near(boundary.origin[first as usize]));
     let at = |half: u32| DVec3::from_array(space.near(boundary.origin[half as usize])) - base;
     let area = |halves: &[u32]| {
         let next = halves.iter().cycle().skip(1);
         halves.iter().zip(next).map(|(&g, &h)| at(g).cross(at(h))).sum::<DVec3>()
     };
-    let areas: Vec<DVec3> = run.iter().map(|l| area(&l.1)).collect();
+    let areas: Vec<DVec3> = run.iter().map(|edge| area(outline.halves(edge))).collect();
     let normal: DVec3 = areas.iter().sum();
     let along = |i: usize| areas[i].dot(normal);
     (0..run.len()).max_by(|&i, &j| along(i).total_cmp(&along(j))).unwrap_or(0)

@@ -208,14 +208,16 @@ impl Complex {
             (a, b) = (b, a);
         }
         let (axis, sign) = space.direction(a, b);
-        let mut spokes: Vec<Spoke> =
-            around.iter().map(|&half| self.spoke(half, facets, space)).collect();
-        let first = spokes[0];
-        spokes.sort_by(|p, q| {
-            let part = |s: &Spoke| first.part(s, axis, sign);
-            part(p).cmp(&part(q)).then_with(|| q.turn(p, axis, sign).cmp(&0))
+        let first = self.spoke(half, facets, space);
+        let mut spokes: Vec<(u8, Spoke)> = Vec::with_capacity(around.len());
+        for &half in &*around {
+            let spoke = self.spoke(half, facets, space);
+            spokes.push((first.part(&spoke, axis, sign), spoke));
+        }
+        spokes.sort_by(|(part, p), (other, q)| {
+            part.cmp(other).then_with(|| q.turn(p, axis, sign).cmp(&0))
         });
-        for (slot, spoke) in around.iter_mut().zip(spokes) {
+        for (slot, (_, spoke)) in around.iter_mut().zip(spokes) {
             *slot = spoke.half;
         }
     }
@@ -229,6 +231,9 @@ impl Complex {
     }
 }
 
+/// Relative error of a product of two integers converted to doubles, with room for the difference.
+const TURN_ERROR: f64 = 4.0 * f64::EPSILON;
+
 /// A cell seen from one of its edges.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spoke {
@@ -241,12 +246,18 @@ pub(super) struct Spoke {
 impl Spoke {
     /// The sign of the turn to another spoke; `sign` is that of the edge's direction along `axis`.
     pub fn turn(&self, other: &Spoke, axis: usize, sign: i32) -> i32 {
-        let cross = crate::geom::predicates::cross(self.normal, other.normal);
-        cross[axis].signum() as i32 * sign
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        let [a, b] = [&self.normal, &other.normal];
+        let (x, y) = (a[i] as f64 * b[j] as f64, a[j] as f64 * b[i] as f64);
+        if (x - y).abs() > (x.abs() + y.abs()) * TURN_ERROR {
+            return if x > y { sign } else { -sign };
+        }
+        let product = |i: usize, j: usize| i128::from(a[i]) * i128::from(b[j]);
+        (product(i, j) - product(j, i)).signum() as i32 * sign
     }
 
     /// 0 in the same direction, 1 less than half a turn on, 2 opposite, 3 beyond.
-    fn part(&self, other: &Spoke, axis: usize, sign: i32) -> i32 {
+    fn part(&self, other: &Spoke, axis: usize, sign: i32) -> u8 {
         match self.turn(other, axis, sign) {
             1 => 1,
             -1 => 3,

@@ -223,7 +223,7 @@ fn arranged(plan: &Plan, trusted: bool, resting: bool) -> Result<Option<Evaluate
     let places = Places::new(plan, &lattice, &sources, &facets);
     let (facets, space, complex, sides) = (&facets, &space, &complex, &sides);
     let (patches, borders, places) = (&patches, &borders, &places);
-    let mesh = Assembly { plan, patches, borders, places, facets, space, complex, sides }.mesh();
-    let Ok(solid) = Polyhedron::new(mesh) else { return Ok(None) };
+    let assembly = Assembly { plan, patches, borders, places, facets, space, complex, sides };
+    let Ok(solid) = assembly.solid() else { return Ok(None) };
     Ok(Some(Evaluated { solid, snap: plan.snap.max(sources.snap), step: lattice.step() }))
 }

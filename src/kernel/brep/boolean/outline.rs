@@ -17,18 +17,27 @@ use super::{
 };
 use crate::geom::predicates::{cross, minus};
 
+/// A loop around a merged polygon.
+pub(super) struct Loop {
+    /// The polygon.
+    pub polygon: u32,
+    /// Its half-edges: a range of the outline's.
+    from: u32,
+    to: u32,
+}
+
 /// Loops of half-edges.
 pub(super) struct Outline {
-    /// Every loop with the polygon it bounds; loops of one polygon follow each other.
-    pub loops: Vec<(u32, Vec<u32>)>,
+    /// All loops; those of one polygon follow each other.
+    pub loops: Vec<Loop>,
+    /// Their half-edges.
+    halves: Vec<u32>,
     /// What follows a half-edge in its loop.
     pub next: Vec<u32>,
     /// What comes before it.
     before: Vec<u32>,
     /// The vertex at its start, known by one of the half-edges that leave it.
     pub vertex: Vec<u32>,
-    /// The loop it belongs to.
-    of_half: Vec<u32>,
 }
 
 impl Outline {
@@ -37,21 +46,21 @@ impl Outline {
     /// `borders` are the points at which patches border: only one fan is there, and it stays.
     pub fn of(boundary: &Boundary, borders: &Borders, complex: &Complex) -> Outline {
         let count = boundary.twin.len();
-        let mut loops = loops(boundary);
-        loops.sort_by_key(|l| l.0);
+        let (loops, halves) = loops(boundary, complex);
         let mut outline = Outline {
             loops,
+            halves,
             next: vec![NONE; count],
             before: vec![NONE; count],
             vertex: vec![NONE; count],
-            of_half: vec![NONE; count],
         };
-        for (number, (_, halves)) in (0u32..).zip(&outline.loops) {
-            for (i, &half) in halves.iter().enumerate() {
-                let next = halves[(i + 1) % halves.len()];
-                outline.next[half as usize] = next;
-                outline.before[next as usize] = half;
-                outline.of_half[half as usize] = number;
+        for edge in &outline.loops {
+            let halves = &outline.halves[edge.from as usize..edge.to as usize];
+            let mut before = halves[halves.len() - 1];
+            for &half in halves {
+                outline.next[before as usize] = half;
+                outline.before[half as usize] = before;
+                before = half;
             }
         }
         let mut sets = Sets::new(count);
@@ -107,66 +116,77 @@ impl Outline {
         dropped
     }
 
+    /// The half-edges of a loop.
+    pub fn halves(&self, edge: &Loop) -> &[u32] {
+        &self.halves[edge.from as usize..edge.to as usize]
+    }
+
     /// Takes back what would leave a loop with fewer than three corners.
     fn keep_triangles(&self, dropped: &mut [bool]) {
         loop {
-            let is_kept = |dropped: &[bool], h: u32| !dropped[self.vertex[h as usize] as usize];
-            let thin: Vec<&Vec<u32>> = self
-                .loops
-                .iter()
-                .map(|l| &l.1)
-                .filter(|l| l.iter().filter(|&&h| is_kept(dropped, h)).count() < 3)
-                .filter(|l| l.iter().any(|&h| !is_kept(dropped, h)))
-                .collect();
-            if thin.is_empty() {
-                return;
+            let mut changed = false;
+            for halves in self.loops.iter().map(|edge| self.halves(edge)) {
+                let vertex = |half: u32| self.vertex[half as usize] as usize;
+                let kept = halves.iter().filter(|&&half| !dropped[vertex(half)]).take(3).count();
+                if kept < 3 && kept < halves.len() {
+                    halves.iter().for_each(|&half| dropped[vertex(half)] = false);
+                    changed = true;
+                }
             }
-            for &half in thin.into_iter().flatten() {
-                dropped[self.vertex[half as usize] as usize] = false;
+            if !changed {
+                return;
             }
         }
     }
 }
 
-/// The loops around all merged polygons, without a point met twice.
-fn loops(boundary: &Boundary) -> Vec<(u32, Vec<u32>)> {
+/// The loops around all merged polygons, without a point met twice, and their half-edges.
+fn loops(boundary: &Boundary, complex: &Complex) -> (Vec<Loop>, Vec<u32>) {
     let mut done = vec![false; boundary.twin.len()];
-    let mut loops = vec![];
+    // The walk that met each point last.
+    let mut met = vec![NONE; complex.point_count()];
+    let (mut loops, mut halves) = (vec![], Vec::with_capacity(boundary.twin.len()));
     for start in boundary.outer() {
         if done[start as usize] {
             continue;
         }
-        let (mut walk, mut half) = (vec![], start);
+        let (from, mut half, mut is_simple) = (halves.len(), start, true);
         while !done[half as usize] {
             done[half as usize] = true;
-            walk.push(half);
+            halves.push(half);
+            let met = &mut met[boundary.at[half as usize] as usize];
+            is_simple &= *met != start;
+            *met = start;
             half = boundary.next[half as usize];
             while boundary.is_inner(half) {
                 half = boundary.next[boundary.twin[half as usize] as usize];
             }
         }
         let polygon = boundary.polygon[start as usize];
-        loops.extend(simple(walk, &boundary.origin).into_iter().map(|l| (polygon, l)));
+        if is_simple {
+            loops.push(Loop { polygon, from: from as u32, to: halves.len() as u32 });
+            continue;
+        }
+        for part in simple(halves.split_off(from), &boundary.at) {
+            let from = halves.len() as u32;
+            halves.extend(part);
+            loops.push(Loop { polygon, from, to: halves.len() as u32 });
+        }
     }
-    loops
+    loops.sort_by_key(|l| l.polygon);
+    (loops, halves)
 }
 
 /// Cuts a walk that meets points more than once into loops that do not.
-fn simple(walk: Vec<u32>, origin: &[u32]) -> Vec<Vec<u32>> {
-    let mut points: Vec<u32> = walk.iter().map(|&h| origin[h as usize]).collect();
-    points.sort_unstable();
-    points.dedup();
-    if points.len() == walk.len() {
-        return vec![walk];
-    }
+fn simple(walk: Vec<u32>, at: &[u32]) -> Vec<Vec<u32>> {
     let (mut loops, mut open) = (vec![], Vec::<u32>::new());
     let mut place: FxHashMap<u32, usize> = FxHashMap::default();
     for half in walk {
-        let point = origin[half as usize];
-        if let Some(&at) = place.get(&point) {
-            let closed = open.split_off(at);
+        let point = at[half as usize];
+        if let Some(&from) = place.get(&point) {
+            let closed = open.split_off(from);
             for &half in &closed {
-                place.remove(&origin[half as usize]);
+                place.remove(&at[half as usize]);
             }
             loops.push(closed);
         }

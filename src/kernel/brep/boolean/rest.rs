@@ -37,7 +37,7 @@ pub(super) struct Rest {
 impl Rest {
     /// Shares out the facets of the operands, each with one owner.
     pub fn of(operands: &[Facets], space: &Space) -> Rest {
-        let mut touching = touching(operands);
+        let touching = touching(operands);
         let mut numbers: Vec<Vec<u32>> =
             operands.iter().map(|o| vec![NONE; o.list().len()]).collect();
         for &[a, b] in &touching {
@@ -51,7 +51,6 @@ impl Rest {
                 active.push((owner, facet));
             }
         }
-        touching.sort_unstable();
         let place = |(owner, facet): (u32, u32)| numbers[owner as usize][facet as usize];
         let pairs = touching.into_iter().map(|[a, b]| (place(a), place(b))).collect();
         let borders = Borders(vec![NONE; space.point_count()]);

@@ -140,9 +140,15 @@ impl Space {
         let exact = Meet::of(a, b, c)?;
         let mut near = exact.approximate();
         for (axis, c) in near.iter_mut().enumerate() {
-            let whole = c.round();
-            if (*c - whole).abs() <= NEAR && exact.is_at(axis, whole as i64) {
+            let whole = whole(*c + 0.5);
+            if (*c - whole).abs() > NEAR {
+                continue;
+            }
+            if exact.is_at(axis, whole as i64) {
                 *c = whole;
+            } else if *c == whole {
+                // Only coordinates that are whole look so.
+                *c = c.next_up();
             }
         }
         Some(self.known_at(near, planes).unwrap_or_else(|| self.store(near, planes)))
@@ -155,7 +161,7 @@ impl Space {
             (0..3).all(|i| (there[i] - near[i]).abs() <= 2.0 * NEAR)
                 && planes.iter().all(|&p| self.side(point, p) == 0)
         };
-        if near.iter().all(|c| c.fract() == 0.0) {
+        if near.iter().all(|&c| is_whole(c)) {
             let found = self.lattice.get(&near.map(|c| c as i32)).copied();
             if found.is_some_and(same) {
                 return found;
@@ -220,7 +226,7 @@ impl Space {
     pub fn compare(&self, a: u32, b: u32, axis: usize) -> Ordering {
         let (p, q) = (&self.points[a as usize], &self.points[b as usize]);
         let difference = p.near[axis] - q.near[axis];
-        let whole = p.planes[0] == NONE && q.planes[0] == NONE;
+        let whole = is_whole(p.near[axis]) && is_whole(q.near[axis]);
         if a == b {
             Ordering::Equal
         } else if whole || difference.abs() > 2.0 * NEAR {
@@ -303,7 +309,7 @@ impl Space {
             return Bounds { min: at, max: at };
         }
         let [min, max] = [-NEAR, NEAR].map(|margin| near.map(|c| c + margin));
-        Bounds { min: min.map(|c| c.floor() as i32), max: max.map(|c| c.ceil() as i32) }
+        Bounds { min: min.map(|c| whole(c) as i32), max: max.map(|c| -whole(-c) as i32) }
     }
 }
 
@@ -313,7 +319,19 @@ pub(super) fn main_axis(v: [i128; 3]) -> usize {
 }
 
 fn cell(coordinate: f64) -> i32 {
-    (coordinate + GRID_SHIFT).floor() as i32
+    whole(coordinate + GRID_SHIFT) as i32
+}
+
+/// The greatest whole number that is not greater than a coordinate. Coordinates fit into an integer,
+/// which is found faster than by rounding.
+fn whole(coordinate: f64) -> f64 {
+    let cut = coordinate as i64 as f64;
+    if cut > coordinate { cut - 1.0 } else { cut }
+}
+
+/// Whether a coordinate is a whole number; stored coordinates only look whole if they are.
+fn is_whole(coordinate: f64) -> bool {
+    coordinate as i64 as f64 == coordinate
 }
 
 #[cfg(test)]

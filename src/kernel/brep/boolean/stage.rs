@@ -127,12 +127,14 @@ fn add_cells(
     let boundary = Boundary::of(complex, sides, &mut labels);
     let outline = Outline::of(&boundary, borders, complex);
     let dropped = outline.dropped((&boundary, borders), complex, space);
-    for run in outline.loops.chunk_by(|a, b| a.0 == b.0) {
-        for (_, halves) in run {
+    let mut corners: Vec<(u32, u32)> = vec![];
+    for run in outline.loops.chunk_by(|a, b| a.polygon == b.polygon) {
+        for edge in run {
+            let halves = outline.halves(edge);
             let is_kept = |half: u32| !dropped[outline.vertex[half as usize] as usize];
             let first = halves.iter().position(|&half| is_kept(half)).unwrap_or(0);
             let turned = || halves[first..].iter().chain(&halves[..first]).copied();
-            let mut corners: Vec<(u32, u32)> = vec![];
+            corners.clear();
             for half in turned() {
                 let support = complex.halves[half as usize].support;
                 match corners.last_mut() {
@@ -141,15 +143,15 @@ fn add_cells(
                     _ => corners.push((boundary.origin[half as usize], support)),
                 }
             }
-            result.push_loop(corners.into_iter());
+            result.push_loop(corners.iter().copied());
         }
-        let key = boundary.keys[run[0].0 as usize].expect("a polygon is made of cells");
+        let key = boundary.keys[run[0].polygon as usize].expect("a polygon is made of cells");
         let (flat, up) = key.plane();
         let plane = match flat {
             Flat::Exact(plane) => Some((plane, !up)),
             Flat::Source(..) => None,
         };
-        let source = source(run[0].0, &boundary, complex, facets);
+        let source = source(run[0].polygon, &boundary, complex, facets);
         result.push(source, run.len(), plane, space);
     }
 }

@@ -79,5 +79,5 @@ fn assembled(
     let sides = Sides::of_surface(&complex, links);
     let (complex, sides, borders) = (&complex, &sides, &borders);
     let assembly = Assembly { plan, patches, borders, places, facets, space, complex, sides };
-    Polyhedron::new(assembly.mesh()).ok()
+    assembly.solid().ok()
 }
