@@ -57,7 +57,7 @@ impl<'a> Carried<'a> {
 
     /// Adds all faces, whose origins are given.
     pub fn add_faces(mut self, origins: &[u32], mesh: &mut PolyMesh) {
-        let mut origins = origins.iter();
+        let (mut origins, mut loops) = (origins.iter(), vec![]);
         for (patch, straight) in std::mem::take(&mut self.patches) {
             let leaf = &self.assembly.plan.leaves[patch.leaf as usize];
             let turned = leaf.local.mirrors() == straight;
@@ -69,20 +69,22 @@ impl<'a> Carried<'a> {
                     *plane = mesh.add_plane();
                 }
                 let plane = *plane;
-                let loops = self.loops(patch.leaf, face, turned, mesh);
-                mesh.push_face(&loops, plane, origin);
+                let count = self.read_loops(patch.leaf, face, turned, mesh, &mut loops);
+                mesh.push_face(&loops[..count], plane, origin);
             }
         }
     }
 
-    /// The loops of a face as mesh points, reversed if the face is turned over.
-    fn loops(
+    /// Reads the loops of a face as mesh points, reversed if the face is turned over, into lists that
+    /// are used again; how many there are.
+    fn read_loops(
         &mut self,
         leaf: u32,
         face: FaceRef<'_>,
         turned: bool,
         mesh: &mut PolyMesh,
-    ) -> Vec<Vec<u32>> {
+        loops: &mut Vec<Vec<u32>>,
+    ) -> usize {
         let source = &self.assembly.plan.leaves[leaf as usize];
         let numbers = &mut self.points[leaf as usize];
         let mut number = |corner: u32| {
@@ -93,13 +95,19 @@ impl<'a> Carried<'a> {
             }
             *slot
         };
-        let mut turn = |corners: &[u32]| -> Vec<u32> {
-            let mut corners: Vec<u32> = corners.iter().map(|&c| number(c)).collect();
-            if turned {
-                corners.reverse();
+        let mut count = 0;
+        for corners in face.loops() {
+            if count == loops.len() {
+                loops.push(vec![]);
             }
-            corners
-        };
-        face.loops().map(&mut turn).collect()
+            let list = &mut loops[count];
+            list.clear();
+            list.extend(corners.iter().map(|&corner| number(corner)));
+            if turned {
+                list.reverse();
+            }
+            count += 1;
+        }
+        count
     }
 }

@@ -183,12 +183,20 @@ impl Facets {
         space: &Space,
         dropped: &mut Vec<[u32; 3]>,
     ) {
-        let loops: Vec<Vec<u32>> = face.loops().map(|l| snapped_loop(l, points, mirrors)).collect();
         let at = |p: u32| space.lattice_point(p).expect("a corner is a lattice point");
+        let loops: Vec<Vec<u32>> = face.loops().map(|l| snapped_loop(l, points, mirrors)).collect();
         let flat = loops.iter().all(|l| l.len() >= 3) && polygon::is_flat(&loops, &at);
         let source = Source { leaf, face: face.index() as u32, flat, flipped: false };
         if flat {
             self.push_corners(source, &loops, space);
+            return;
+        }
+        let halves = match &loops[..] {
+            [quad] => polygon::quad_triangles(quad, &at),
+            _ => None,
+        };
+        if let Some(halves) = halves {
+            halves.iter().for_each(|triangle| self.push_triangle(source, triangle, space));
             return;
         }
         for triangle in polygon::triangles(&loops, &at) {
@@ -199,9 +207,14 @@ impl Facets {
             if polygon::area_vector([&triangle[..]].into_iter(), &at) == [0; 3] {
                 dropped.push(triangle);
             } else {
-                self.push_corners(source, &[triangle.to_vec()], space);
+                self.push_triangle(source, &triangle, space);
             }
         }
+    }
+
+    fn push_triangle(&mut self, source: Source, triangle: &[u32; 3], space: &Space) {
+        self.push_loop(triangle.iter().map(|&corner| (corner, NONE)));
+        self.push(source, 1, None, space);
     }
 
     /// Adds a facet with lattice points for corners.

@@ -12,7 +12,13 @@
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
-use super::{frame::Leaf, hierarchy::Bounds, lattice::Lattice, space::NONE, union_find::Sets};
+use super::{
+    frame::Leaf,
+    hierarchy::{Bounds, Hierarchy},
+    lattice::Lattice,
+    space::NONE,
+    union_find::Sets,
+};
 use crate::geom::{FaceRef, PolyMesh, predicates::Int3};
 
 /// Leaves with fewer faces have no patches: arranging them costs less than looking.
@@ -165,20 +171,39 @@ fn resting_faces(leaves: &[Leaf], points: &[Vec<Int3>]) -> Vec<Vec<bool>> {
     let boxes: Vec<Vec<Bounds>> = leaves.par_iter().zip(points).map(boxes).collect();
     let around: Vec<Bounds> =
         boxes.iter().map(|b| b.iter().fold(Bounds::EMPTY, |all, b| all.with(*b))).collect();
+    let near: Vec<Vec<(Bounds, u32)>> =
+        (0..leaves.len()).into_par_iter().map(|leaf| near(leaf, &boxes, &around)).collect();
+    let tree = |near: &Vec<(Bounds, u32)>| Hierarchy::new(near.iter().map(|n| n.0));
+    let trees: Vec<Hierarchy> = near.par_iter().map(tree).collect();
     let found = (0..leaves.len()).into_par_iter().map(|leaf| {
-        let mesh = leaves[leaf].solid.mesh();
-        if mesh.face_count() < LARGE {
+        let count = boxes[leaf].len();
+        if count < LARGE {
             return vec![];
         }
-        let mut grid = Grid::new(around[leaf]);
+        let mut resting = vec![true; count];
         let others = (0..leaves.len()).filter(|&o| o != leaf && around[o].meets(&around[leaf]));
-        let others = others.flat_map(|other| &boxes[other]);
-        others.filter(|b| b.meets(&around[leaf])).for_each(|b| grid.mark(b));
-        let mut resting: Vec<bool> = boxes[leaf].iter().map(|b| !grid.meets(b)).collect();
-        wake(mesh, &points[leaf], &mut resting);
+        for other in others {
+            trees[leaf].pairs(&trees[other], |face, _| {
+                resting[near[leaf][face as usize].1 as usize] = false;
+            });
+        }
+        wake(leaves[leaf].solid.mesh(), &points[leaf], &mut resting);
         resting
     });
     found.collect()
+}
+
+/// The faces of a leaf that others may touch: of a large one those that a grid tells.
+fn near(leaf: usize, boxes: &[Vec<Bounds>], around: &[Bounds]) -> Vec<(Bounds, u32)> {
+    let all = boxes[leaf].iter().copied().zip(0u32..);
+    if boxes[leaf].len() < LARGE {
+        return all.collect();
+    }
+    let mut grid = Grid::new(around[leaf]);
+    let others = (0..boxes.len()).filter(|&o| o != leaf && around[o].meets(&around[leaf]));
+    let others = others.flat_map(|other| &boxes[other]);
+    others.filter(|b| b.meets(&around[leaf])).for_each(|b| grid.mark(b));
+    all.filter(|(bounds, _)| grid.meets(bounds)).collect()
 }
 
 /// Takes out of the resting faces what the argument needs.

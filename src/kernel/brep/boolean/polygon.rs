@@ -62,6 +62,27 @@ pub(super) fn is_flat(loops: &[Vec<u32>], at: &impl Fn(u32) -> Int3) -> bool {
     corners.len() == count && corners.iter().all(level)
 }
 
+/// A polygon with four corners, convex by a good measure, cut along its shorter diagonal.
+pub(super) fn quad_triangles(corners: &[u32], at: &impl Fn(u32) -> Int3) -> Option<[[u32; 3]; 2]> {
+    /// Sine of the angle that a corner must have at least, squared.
+    const SHARP: f64 = 1e-4;
+    let &[a, b, c, d] = corners else { return None };
+    let places = [a, b, c, d].map(|p| DVec3::from_array(at(p).map(|c| c as f64)));
+    let normal = (places[2] - places[0]).cross(places[3] - places[1]);
+    for i in 0..4 {
+        let (before, after) = (places[(i + 3) % 4] - places[i], places[(i + 1) % 4] - places[i]);
+        let turn = after.cross(before);
+        let room = after.length_squared() * before.length_squared();
+        let along = turn.dot(normal);
+        if along <= 0.0 || along * along <= SHARP * room * normal.length_squared() {
+            return None;
+        }
+    }
+    let [first, second] =
+        [places[2] - places[0], places[3] - places[1]].map(|diagonal| diagonal.length_squared());
+    Some(if first <= second { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] })
+}
+
 /// A polygon cut into triangles, without new corners. Works on anything that snapping makes of a
 /// face: the triangles always have the same boundary as the loops.
 pub(super) fn triangles(loops: &[Vec<u32>], at: &impl Fn(u32) -> Int3) -> Vec<[u32; 3]> {
