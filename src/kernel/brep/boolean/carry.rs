@@ -58,6 +58,9 @@ impl<'a> Carried<'a> {
     /// Adds all faces, whose origins are given.
     pub fn add_faces(mut self, origins: &[u32], mesh: &mut PolyMesh) {
         let (mut origins, mut loops) = (origins.iter(), vec![]);
+        // Most faces are quadrilaterals or triangles, with about one point each at most.
+        mesh.reserve(origins.len(), 4 * origins.len());
+        mesh.points.reserve(origins.len());
         for (patch, straight) in std::mem::take(&mut self.patches) {
             let leaf = &self.assembly.plan.leaves[patch.leaf as usize];
             let turned = leaf.local.mirrors() == straight;

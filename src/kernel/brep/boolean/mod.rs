@@ -43,6 +43,7 @@ mod expression;
 mod facet;
 mod frame;
 mod graph;
+mod grid;
 mod hierarchy;
 mod intersect;
 mod lattice;

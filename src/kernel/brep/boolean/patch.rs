@@ -14,6 +14,7 @@ use rustc_hash::FxHashMap;
 
 use super::{
     frame::Leaf,
+    grid::Grid,
     hierarchy::{Bounds, Hierarchy},
     lattice::Lattice,
     space::NONE,
@@ -85,39 +86,40 @@ impl Patches {
         let points: Vec<Vec<Int3>> = leaves.par_iter().map(snap).collect();
         let mut patches = Patches { leaves: vec![], list: vec![] };
         let is_large = |leaf: &Leaf| leaf.solid.mesh().face_count() >= LARGE;
-        let found: Vec<Vec<bool>> = if resting && leaves.iter().any(is_large) {
+        let found: Vec<Found> = if resting && leaves.iter().any(is_large) {
             resting_faces(leaves, &points)
         } else {
-            vec![vec![]; leaves.len()]
+            leaves.iter().map(|_| None).collect()
         };
-        for ((leaf, points), resting) in leaves.iter().zip(points).zip(found) {
-            patches.add(leaf.solid.mesh(), Snapped { points, resting, patches: vec![] });
+        for ((leaf, points), found) in leaves.iter().zip(points).zip(found) {
+            match found {
+                Some((resting, sets)) => patches.add(leaf.solid.mesh(), points, resting, sets),
+                None => patches.leaves.push(Snapped { points, resting: vec![], patches: vec![] }),
+            }
         }
         patches
     }
 
     /// Groups the resting faces of a leaf into patches.
-    fn add(&mut self, mesh: &PolyMesh, mut snapped: Snapped) {
+    fn add(&mut self, mesh: &PolyMesh, points: Vec<Int3>, resting: Vec<bool>, mut sets: Sets) {
         let leaf = self.leaves.len() as u32;
-        if snapped.resting.contains(&true) {
-            let resting = || mesh.faces().filter(|f| snapped.resting[f.index()]);
-            let mut sets = joined(resting(), snapped.points.len());
-            let mut numbers = vec![NONE; snapped.points.len()];
-            for face in resting() {
-                let root = sets.find(face.outer()[0]);
-                if numbers[root as usize] == NONE {
-                    numbers[root as usize] = self.list.len() as u32;
-                    self.list.push(Patch { leaf, faces: vec![], bounds: Bounds::EMPTY });
-                }
-                let number = numbers[root as usize];
-                let patch = &mut self.list[number as usize];
-                patch.faces.push(face.index() as u32);
-                patch.bounds = patch.bounds.with(bounds(face, &snapped.points));
-                face.loops().flatten().for_each(|&c| numbers[c as usize] = number);
+        let mut numbers = vec![NONE; points.len()];
+        let mut patches = vec![NONE; points.len()];
+        for face in mesh.faces().filter(|f| resting[f.index()]) {
+            let number = &mut numbers[sets.find(face.outer()[0]) as usize];
+            if *number == NONE {
+                *number = self.list.len() as u32;
+                self.list.push(Patch { leaf, faces: vec![], bounds: Bounds::EMPTY });
             }
-            snapped.patches = numbers;
+            let patch = &mut self.list[*number as usize];
+            patch.faces.push(face.index() as u32);
+            for &corner in face.loops().flatten() {
+                patches[corner as usize] = *number;
+                let at = points[corner as usize].map(|c| c as i32);
+                patch.bounds = patch.bounds.with(Bounds { min: at, max: at });
+            }
         }
-        self.leaves.push(snapped);
+        self.leaves.push(Snapped { points, resting, patches });
     }
 
     /// Which patch each point borders on, given the leaves' corners that the points are.
@@ -148,14 +150,10 @@ impl Patches {
     }
 }
 
-/// Points in one set where faces hold them together.
-fn joined<'a>(faces: impl Iterator<Item = FaceRef<'a>>, points: usize) -> Sets {
-    let mut sets = Sets::new(points);
-    for face in faces {
-        let first = face.outer()[0];
-        face.loops().flatten().for_each(|&c| sets.join(first, c));
-    }
-    sets
+/// Puts the points of a face into one set.
+fn join_corners(face: FaceRef<'_>, sets: &mut Sets) {
+    let first = face.outer()[0];
+    face.loops().flatten().for_each(|&corner| sets.join(first, corner));
 }
 
 fn bounds(face: FaceRef<'_>, points: &[Int3]) -> Bounds {
@@ -163,8 +161,12 @@ fn bounds(face: FaceRef<'_>, points: &[Int3]) -> Bounds {
     corners.fold(Bounds::EMPTY, |all, p| all.with(Bounds { min: p, max: p }))
 }
 
-/// For each leaf and face whether it may rest.
-fn resting_faces(leaves: &[Leaf], points: &[Vec<Int3>]) -> Vec<Vec<bool>> {
+/// For each face of a leaf whether it may rest, and the points that such faces hold together (and
+/// perhaps some that were found to be needed).
+type Found = Option<(Vec<bool>, Sets)>;
+
+/// Which faces of each leaf may rest.
+fn resting_faces(leaves: &[Leaf], points: &[Vec<Int3>]) -> Vec<Found> {
     let boxes = |(leaf, points): (&Leaf, &Vec<Int3>)| {
         leaf.solid.mesh().faces().map(|f| bounds(f, points)).collect::<Vec<Bounds>>()
     };
@@ -178,7 +180,7 @@ fn resting_faces(leaves: &[Leaf], points: &[Vec<Int3>]) -> Vec<Vec<bool>> {
     let found = (0..leaves.len()).into_par_iter().map(|leaf| {
         let count = boxes[leaf].len();
         if count < LARGE {
-            return vec![];
+            return None;
         }
         let mut resting = vec![true; count];
         let others = (0..leaves.len()).filter(|&o| o != leaf && around[o].meets(&around[leaf]));
@@ -187,8 +189,11 @@ fn resting_faces(leaves: &[Leaf], points: &[Vec<Int3>]) -> Vec<Vec<bool>> {
                 resting[near[leaf][face as usize].1 as usize] = false;
             });
         }
-        wake(leaves[leaf].solid.mesh(), &points[leaf], &mut resting);
-        resting
+        let mesh = leaves[leaf].solid.mesh();
+        let mut sets = Sets::new(points[leaf].len());
+        mesh.faces().filter(|f| resting[f.index()]).for_each(|f| join_corners(f, &mut sets));
+        wake(mesh, &points[leaf], &sets, &mut resting);
+        Some((resting, sets))
     });
     found.collect()
 }
@@ -206,10 +211,14 @@ fn near(leaf: usize, boxes: &[Vec<Bounds>], around: &[Bounds]) -> Vec<(Bounds, u
     all.filter(|(bounds, _)| grid.meets(bounds)).collect()
 }
 
-/// Takes out of the resting faces what the argument needs.
-fn wake(mesh: &PolyMesh, points: &[Int3], resting: &mut [bool]) {
-    let mut awake = shared_points(points);
-    let mut shells = joined(mesh.faces(), points.len());
+/// Takes out of the resting faces what the argument needs: those around the first point of every
+/// shell, those in a plane with faces that take part, those at points of faces that take part which
+/// are one point of the lattice. `sets` are the points that resting faces hold together.
+fn wake(mesh: &PolyMesh, points: &[Int3], sets: &Sets, resting: &mut [bool]) {
+    let mut shells = sets.clone();
+    for face in mesh.faces().filter(|f| !resting[f.index()]) {
+        join_corners(face, &mut shells);
+    }
     let mut first: Vec<u32> = (0..points.len() as u32).collect();
     for point in 0..points.len() as u32 {
         let slot = &mut first[shells.find(point) as usize];
@@ -217,97 +226,57 @@ fn wake(mesh: &PolyMesh, points: &[Int3], resting: &mut [bool]) {
             *slot = point;
         }
     }
-    for face in mesh.faces() {
-        let corner = face.outer()[0];
-        awake[first[shells.find(corner) as usize] as usize] = true;
-    }
-    for face in mesh.faces() {
-        if face.loops().flatten().any(|&c| awake[c as usize]) {
-            resting[face.index()] = false;
-        }
-    }
+    let mut awake = vec![false; points.len()];
+    let roots = (0..points.len() as u32).filter(|&p| shells.find(p) == p).collect::<Vec<_>>();
+    roots.into_iter().for_each(|root| awake[first[root as usize] as usize] = true);
+    wake_at(mesh, &awake, resting);
     let mut planes = vec![false; mesh.plane_count() as usize];
     for face in mesh.faces().filter(|f| !resting[f.index()]) {
         planes[face.plane() as usize] = true;
     }
     let moving = |face: FaceRef<'_>| planes[face.plane() as usize];
     mesh.faces().filter(|&f| moving(f)).for_each(|f| resting[f.index()] = false);
+    while wake_shared(mesh, points, resting) {}
 }
 
-/// Whether each point is at the same place as another.
-fn shared_points(points: &[Int3]) -> Vec<bool> {
-    let mut seen: FxHashMap<[i32; 3], u32> = FxHashMap::default();
-    seen.reserve(points.len());
-    let mut shared = vec![false; points.len()];
-    for (number, point) in (0u32..).zip(points) {
-        if let Some(before) = seen.insert(point.map(|c| c as i32), number) {
-            shared[before as usize] = true;
-            shared[number as usize] = true;
+/// Takes the faces at marked points out of the resting ones; whether there were any.
+fn wake_at(mesh: &PolyMesh, awake: &[bool], resting: &mut [bool]) -> bool {
+    let mut any = false;
+    for face in mesh.faces() {
+        let resting = &mut resting[face.index()];
+        if *resting && face.loops().flatten().any(|&corner| awake[corner as usize]) {
+            *resting = false;
+            any = true;
         }
     }
-    shared
+    any
 }
 
-/// Cells along each axis of a grid: the bits of a word.
-const CELLS: usize = 64;
-
-/// A box in cells, some of which are marked.
-struct Grid {
-    bounds: Bounds,
-    scale: [f64; 3],
-    /// Marks along x, for each z and y.
-    rows: Vec<u64>,
-}
-
-impl Grid {
-    fn new(bounds: Bounds) -> Grid {
-        let size = |i: usize| f64::from(bounds.max[i]) - f64::from(bounds.min[i]) + 1.0;
-        let scale = std::array::from_fn(|i| CELLS as f64 / size(i));
-        Grid { bounds, scale, rows: vec![0; CELLS * CELLS] }
+/// Takes the faces at points out of the resting ones that are, on the lattice, one point with another
+/// point of a face that takes part; whether there were any.
+fn wake_shared(mesh: &PolyMesh, points: &[Int3], resting: &mut [bool]) -> bool {
+    let mut seen: FxHashMap<[i32; 3], u32> = FxHashMap::default();
+    let mut shared = vec![];
+    for face in mesh.faces().filter(|f| !resting[f.index()]) {
+        for &corner in face.loops().flatten() {
+            let place = points[corner as usize].map(|c| c as i32);
+            let known = *seen.entry(place).or_insert(corner);
+            if known != corner {
+                shared.extend([known, corner]);
+            }
+        }
     }
-
-    /// The cell of a coordinate; never decreases with it, so boxes that meet share a cell.
-    fn cell(&self, axis: usize, coordinate: i32) -> usize {
-        let from = f64::from(coordinate) - f64::from(self.bounds.min[axis]);
-        ((from * self.scale[axis]) as usize).min(CELLS - 1)
+    if shared.is_empty() {
+        return false;
     }
-
-    /// The rows that a box meets, and the bits of its cells in them.
-    fn rows(&self, bounds: &Bounds) -> (impl Iterator<Item = usize> + use<>, u64) {
-        let [x, y, z] =
-            [0, 1, 2].map(|i| [self.cell(i, bounds.min[i]), self.cell(i, bounds.max[i])]);
-        let bits = (u64::MAX >> (CELLS - 1 - (x[1] - x[0]))) << x[0];
-        ((z[0]..=z[1]).flat_map(move |z| (y[0]..=y[1]).map(move |y| z * CELLS + y)), bits)
-    }
-
-    fn mark(&mut self, bounds: &Bounds) {
-        let (rows, bits) = self.rows(bounds);
-        rows.for_each(|row| self.rows[row] |= bits);
-    }
-
-    fn meets(&self, bounds: &Bounds) -> bool {
-        let (mut rows, bits) = self.rows(bounds);
-        rows.any(|row| self.rows[row] & bits != 0)
-    }
+    let mut awake = vec![false; points.len()];
+    shared.into_iter().for_each(|point| awake[point as usize] = true);
+    wake_at(mesh, &awake, resting)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn boxes_that_meet_share_a_cell() {
-        let cube = |low: i32, high: i32| Bounds { min: [low; 3], max: [high; 3] };
-        let mut grid = Grid::new(cube(-1000, 1000));
-        grid.mark(&cube(-2000, -500));
-        assert!(grid.meets(&cube(-500, 900)));
-        assert!(!grid.meets(&cube(-400, 2000)));
-    }
-
-    #[test]
-    fn points_at_one_place_are_found() {
-        assert_eq!(shared_points(&[[1, 2, 3], [4, 5, 6], [1, 2, 3]]), [true, false, true]);
-    }
 
     /// A solid with patches in all places that matter gives what it gives without them.
     #[test]

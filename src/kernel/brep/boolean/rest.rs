@@ -6,6 +6,7 @@
 
 use super::{
     facet::Facets,
+    grid::Grid,
     hierarchy::{Bounds, Hierarchy},
     patch::Borders,
     space::{NONE, Space},
@@ -110,14 +111,28 @@ fn touching(operands: &[Facets]) -> Vec<[(u32, u32); 2]> {
     let mut owners = vec![];
     Hierarchy::new(around.iter().copied()).own_pairs(|a, b| owners.push((a, b)));
     for (a, b) in owners {
-        let [near_a, near_b] = [(a, b), (b, a)]
-            .map(|(one, other)| near(&operands[one as usize], &around[other as usize]));
+        let mut near_a = near(&operands[a as usize], &around[b as usize]);
+        let mut near_b = near(&operands[b as usize], &around[a as usize]);
+        if near_a.len().min(near_b.len()) > FEW {
+            thin_out(&mut near_a, &near_b, around[b as usize]);
+            thin_out(&mut near_b, &near_a, around[a as usize]);
+        }
         let tree = |near: &[(Bounds, u32)]| Hierarchy::new(near.iter().map(|n| n.0));
         tree(&near_a).pairs(&tree(&near_b), |f, g| {
             found.push([(a, near_a[f as usize].1), (b, near_b[g as usize].1)]);
         });
     }
     found
+}
+
+/// So few facets are not worth a grid.
+const FEW: usize = 48;
+
+/// Leaves out what is not near any of the others, which are in the given box.
+fn thin_out(list: &mut Vec<(Bounds, u32)>, others: &[(Bounds, u32)], around: Bounds) {
+    let mut grid = Grid::new(around);
+    others.iter().for_each(|other| grid.mark(&other.0));
+    list.retain(|own| grid.meets(&own.0));
 }
 
 /// The facets whose boxes meet a box.

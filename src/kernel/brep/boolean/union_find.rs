@@ -1,6 +1,7 @@
 //! Disjoint sets of numbers (Galler and Fischer 1964, with path halving).
 
 /// Numbers from 0 in disjoint sets; the least member stands for its set.
+#[derive(Clone)]
 pub(super) struct Sets(Vec<u32>);
 
 impl Sets {
