@@ -3,7 +3,10 @@
 //!
 //! Segments are split wherever they meet, equal pieces become one edge, the edges around every
 //! vertex are sorted by angle, and walking them gives the cells. Which facets cover a cell follows
-//! by crossing edges from the unbounded cell inwards. All decisions are exact.
+//! by crossing edges from the unbounded cell inwards. All decisions are exact. Planes are arranged at
+//! the same time; new points are numbered in between, so that the numbers depend on nothing else.
+
+use rayon::prelude::*;
 
 use super::{
     cells::Complex,
@@ -60,6 +63,8 @@ struct Arranger {
     points: Vec<u32>,
     /// Points that split segments, as pairs (segment, point).
     splits: Vec<(u32, u32)>,
+    /// Points that split segments but are not known, each by its three planes.
+    missing: Vec<[u32; 3]>,
     stops: Vec<u32>,
     pieces: Vec<Piece>,
     graph: Graph,
@@ -80,8 +85,8 @@ pub(super) fn complex(
     trusted: bool,
 ) -> Complex {
     let mut meetings = intersect::meetings(facets, pairs, space);
-    let mut complex = Complex::new(space.point_count());
-    let mut groups: Vec<(u32, u32)> = vec![];
+    let mut complex = Complex::default();
+    let mut members: Vec<(u32, u32)> = vec![];
     let mut starts: Vec<u32> = Vec::with_capacity(facets.list().len() + 1);
     let mut end = 0;
     for facet in 0..facets.list().len() as u32 {
@@ -90,29 +95,96 @@ pub(super) fn complex(
         let count = rest.iter().take_while(|t| t.facet == facet).count();
         end += count as u32;
         if count > 0 || meetings.grouped[facet as usize] {
-            groups.push((meetings.coplanar.find(facet), facet));
+            facets.find_supports(facet, space);
+            members.push((meetings.coplanar.find(facet), facet));
         } else {
             complex.add_whole(facet, facets);
         }
     }
     starts.push(end);
-    groups.sort_unstable();
-    let mut arranger = Arranger::default();
-    for group in groups.chunk_by(|a, b| a.0 == b.0) {
-        let traces = group.iter().flat_map(|&(_, facet)| {
-            let [from, to] = [0, 1].map(|i| starts[facet as usize + i] as usize);
-            &meetings.traces[from..to]
-        });
-        arranger.gather(group.iter().map(|g| g.1), traces, facets, space);
-        arranger.split(space, trusted);
-        arranger.connect(space);
-        arranger.cells.of(&arranger.graph, space);
-        arranger.covers.of(&arranger.graph, &arranger.cells);
-        arranger.emit(facets, &mut complex);
-    }
+    members.sort_unstable();
+    let groups: Vec<&Group> = members.chunk_by(|a, b| a.0 == b.0).collect();
+    Planes { groups, starts, traces: &meetings.traces, facets, trusted }.cut(space, &mut complex);
     complex.add_patches(patches.iter().copied());
-    complex.finish();
+    complex.finish(space.point_count());
     complex
+}
+
+/// Facets that are arranged together, each with a number of the group.
+type Group = [(u32, u32)];
+
+/// The planes to arrange.
+struct Planes<'a> {
+    /// The facets in each.
+    groups: Vec<&'a Group>,
+    /// Where the traces of each facet begin; one more at the end.
+    starts: Vec<u32>,
+    traces: &'a [Trace],
+    facets: &'a Facets,
+    trusted: bool,
+}
+
+/// What comes of arranging some planes.
+#[derive(Default)]
+struct Arranged<'g> {
+    complex: Complex,
+    /// The groups left over.
+    left: Vec<&'g Group>,
+    /// The points needed there, each by three planes.
+    missing: Vec<[u32; 3]>,
+}
+
+/// Planes that are arranged together by one thread.
+const CHUNK: usize = 64;
+
+impl Planes<'_> {
+    /// Cuts all facets of all planes. Where new points arise they are found after a first look.
+    fn cut(&self, space: &mut Space, complex: &mut Complex) {
+        let first = self.look(&self.groups, space);
+        let mut left = vec![];
+        for part in first {
+            complex.append(part.complex);
+            for &[a, b, c] in &part.missing {
+                space.meet(a, b, c).expect("lines that cross meet in one point");
+            }
+            left.extend(part.left);
+        }
+        for part in self.look(&left, space) {
+            complex.append(part.complex);
+        }
+    }
+
+    /// Arranges the planes of groups, as far as all points are known.
+    fn look<'g>(&self, groups: &[&'g Group], space: &Space) -> Vec<Arranged<'g>> {
+        let look = |chunk: &[&'g Group]| {
+            let (mut arranger, mut part) = (Arranger::default(), Arranged::default());
+            for &group in chunk {
+                self.gather(group, &mut arranger, space);
+                arranger.split(space, self.trusted);
+                if arranger.missing.is_empty() {
+                    arranger.finish(self.facets, space, &mut part.complex);
+                } else {
+                    part.missing.append(&mut arranger.missing);
+                    part.left.push(group);
+                }
+            }
+            part
+        };
+        if groups.len() <= CHUNK {
+            vec![look(groups)]
+        } else {
+            groups.par_chunks(CHUNK).map(look).collect()
+        }
+    }
+
+    fn gather(&self, group: &Group, arranger: &mut Arranger, space: &Space) {
+        let facets = group.iter().map(|g| g.1);
+        let traces = facets.clone().flat_map(|facet| {
+            let [from, to] = [0, 1].map(|i| self.starts[facet as usize + i] as usize);
+            &self.traces[from..to]
+        });
+        arranger.gather(facets, traces, self.facets, space);
+    }
 }
 
 impl Arranger {
@@ -122,17 +194,17 @@ impl Arranger {
         &mut self,
         group: impl Iterator<Item = u32>,
         traces: impl Iterator<Item = &'a Trace>,
-        facets: &mut Facets,
-        space: &mut Space,
+        facets: &Facets,
+        space: &Space,
     ) {
         self.parts.clear();
         self.points.clear();
         for facet in group {
-            let (plane, turned) = facets.plane(facet, space);
+            let known = facets.known_plane(facet);
+            let (plane, turned) = known.expect("a facet that is cut has a known plane");
             self.graph.plane = plane;
             let owner = facets.list()[facet as usize].owner;
             for (a, b, support) in facets.supported_edges(facet) {
-                let support = if support == NONE { space.support(a, b, plane) } else { support };
                 let side = Some((facet, if turned == (a > b) { 1 } else { -1 }));
                 self.parts.push(Part { a: a.min(b), b: a.max(b), support, owner, side });
             }
@@ -165,17 +237,20 @@ impl Arranger {
         }
     }
 
-    /// Finds the points that split each segment.
-    fn split(&mut self, space: &mut Space, trusted: bool) {
+    /// Finds the points that split each segment, and the planes of those that are missing.
+    fn split(&mut self, space: &Space, trusted: bool) {
         self.splits.clear();
-        let Arranger { segments, splits, graph, points, .. } = self;
+        self.missing.clear();
+        let Arranger { segments, splits, missing, graph, points, .. } = self;
         let may_cross = |s: u32, t: u32| {
             let owner = segments[s as usize].owner;
             !trusted || owner == NONE || owner != segments[t as usize].owner
         };
-        let mut pair = |s: u32, t: u32, space: &mut Space| {
+        let mut pair = |s: u32, t: u32| {
             let (first, second) = (&segments[s as usize], &segments[t as usize]);
-            split_pair((s, first), (t, second), graph.plane, space, splits);
+            if let Some(planes) = split_pair((s, first), (t, second), graph.plane, space, splits) {
+                missing.push(planes);
+            }
         };
         if segments.len() > FEW {
             let tree = Hierarchy::new(segments.iter().map(|s| s.bounds));
@@ -185,7 +260,7 @@ impl Arranger {
                     pairs.push((s, t));
                 }
             });
-            pairs.into_iter().for_each(|(s, t)| pair(s, t, space));
+            pairs.into_iter().for_each(|(s, t)| pair(s, t));
             for &point in &*points {
                 tree.overlapping(&space.bounds(point), |s| {
                     split_at(s, &segments[s as usize], point, space, splits);
@@ -196,7 +271,7 @@ impl Arranger {
         for (s, first) in (0u32..).zip(&*segments) {
             for (t, second) in (0u32..).zip(&*segments).skip(s as usize + 1) {
                 if first.bounds.meets(&second.bounds) && may_cross(s, t) {
-                    pair(s, t, space);
+                    pair(s, t);
                 }
             }
         }
@@ -206,6 +281,14 @@ impl Arranger {
                 split_at(s, segment, point, space, splits);
             }
         }
+    }
+
+    /// Makes cells of what is gathered and split, and adds those that are covered.
+    fn finish(&mut self, facets: &Facets, space: &Space, complex: &mut Complex) {
+        self.connect(space);
+        self.cells.of(&self.graph, space);
+        self.covers.of(&self.graph, &self.cells);
+        self.emit(facets, complex);
     }
 
     /// Makes the pieces of all segments edges of the graph and links them.
@@ -304,29 +387,29 @@ fn split_at(s: u32, segment: &Segment, point: u32, space: &Space, splits: &mut V
     }
 }
 
-/// Splits two segments where they meet.
+/// Splits two segments where they meet; the planes of their common point where it is not known.
 fn split_pair(
     (s, first): (u32, &Segment),
     (t, second): (u32, &Segment),
     plane: u32,
-    space: &mut Space,
+    space: &Space,
     splits: &mut Vec<(u32, u32)>,
-) {
+) -> Option<[u32; 3]> {
     let (fa, fb) = (side(second, first.a, space), side(second, first.b, space));
     let shares = |p: u32| p == second.a || p == second.b;
     if fa * fb > 0 || (shares(first.a) && fb != 0) || (shares(first.b) && fa != 0) {
-        return;
+        return None;
     }
     let (sa, sb) = (side(first, second.a, space), side(first, second.b, space));
     if sa * sb > 0 {
-        return;
+        return None;
     }
     if (fa == 0 && fb == 0) || (sa == 0 && sb == 0) {
         let on_first = [second.a, second.b].into_iter().filter(|&p| between(first, p, space));
         splits.extend(on_first.map(|p| (s, p)));
         let on_second = [first.a, first.b].into_iter().filter(|&p| between(second, p, space));
         splits.extend(on_second.map(|p| (t, p)));
-        return;
+        return None;
     }
     match (fa == 0, fb == 0, sa * sb < 0) {
         (true, _, true) => splits.push((t, first.a)),
@@ -335,11 +418,12 @@ fn split_pair(
         (false, false, _) if sa == 0 => splits.push((s, second.a)),
         (false, false, _) if sb == 0 => splits.push((s, second.b)),
         (false, false, _) => {
-            let meet = space.meet(plane, first.support, second.support);
-            let point = meet.expect("lines that cross meet in one point");
+            let planes = [plane, first.support, second.support];
+            let Some(point) = space.known_meet(planes) else { return Some(planes) };
             splits.extend([(s, point), (t, point)]);
         }
     }
+    None
 }
 
 /// What covers each cell of an arrangement: facets, and how often; the unbounded one nothing.

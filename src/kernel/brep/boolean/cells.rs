@@ -21,7 +21,7 @@ struct Cell {
 pub(super) struct Half {
     /// Where it starts.
     pub origin: u32,
-    /// The place of that point among those of the complex.
+    /// The place of that point among those of the complex, once it is finished.
     pub at: u32,
     /// What follows around the cell.
     pub next: u32,
@@ -35,6 +35,7 @@ pub(super) struct Half {
 }
 
 /// All cells of an operation.
+#[derive(Default)]
 pub(super) struct Complex {
     cells: Vec<Cell>,
     /// Facets over each cell, and how often: positive when the facet faces up.
@@ -42,9 +43,8 @@ pub(super) struct Complex {
     /// The half-edges of all cells, a cell's together.
     pub halves: Vec<Half>,
     loop_start: u32,
-    /// The points met, and one more than the place of each of them here.
-    points: Vec<u32>,
-    places: Vec<u32>,
+    /// The number of points met.
+    points: usize,
     /// The cell that stands for the first patch; those of the others follow to the end.
     pub first_patch: u32,
     /// The half-edges along every edge: `incident[edge_ends[e-1]..edge_ends[e]]`.
@@ -53,36 +53,24 @@ pub(super) struct Complex {
 }
 
 impl Complex {
-    /// A complex without cells, over some of so many points. More may come.
-    pub fn new(points: usize) -> Complex {
-        Complex {
-            cells: vec![],
-            covers: vec![],
-            halves: vec![],
-            loop_start: 0,
-            points: vec![],
-            places: vec![0; points],
-            first_patch: 0,
-            incident: vec![],
-            edge_ends: vec![],
-        }
-    }
-
-    /// The number of points met.
+    /// The number of points met, once the complex is finished.
     pub fn point_count(&self) -> usize {
-        self.points.len()
+        self.points
     }
 
-    fn place(&mut self, point: u32) -> u32 {
-        if point as usize >= self.places.len() {
-            self.places.resize(point as usize + 1, 0);
-        }
-        let place = &mut self.places[point as usize];
-        if *place == 0 {
-            self.points.push(point);
-            *place = self.points.len() as u32;
-        }
-        *place - 1
+    /// Adds all cells of another complex that is not finished either.
+    pub fn append(&mut self, other: Complex) {
+        let [covers, cells, halves] =
+            [self.covers.len(), self.cells.len(), self.halves.len()].map(|count| count as u32);
+        self.covers.extend(other.covers);
+        self.cells
+            .extend(other.cells.into_iter().map(|c| Cell { cover_end: c.cover_end + covers, ..c }));
+        self.halves.extend(other.halves.into_iter().map(|half| Half {
+            next: half.next + halves,
+            cell: half.cell + cells,
+            ..half
+        }));
+        self.loop_start = self.halves.len() as u32;
     }
 
     /// Begins a cell; its loops follow.
@@ -94,8 +82,7 @@ impl Complex {
     /// Adds a step of a loop.
     pub fn push_half(&mut self, origin: u32, support: u32) {
         let (next, cell) = (self.halves.len() as u32 + 1, self.cells.len() as u32 - 1);
-        let at = self.place(origin);
-        self.halves.push(Half { origin, at, next, support, cell, edge: 0 });
+        self.halves.push(Half { origin, at: NONE, next, support, cell, edge: 0 });
     }
 
     /// Closes a loop.
@@ -166,13 +153,14 @@ impl Complex {
     }
 
     /// Finds the half-edges that run along the same edges: those with the same smaller point are
-    /// brought together by counting, and sorted by their larger point.
-    pub fn finish(&mut self) {
-        let points = self.points.len();
+    /// brought together by counting, and sorted by their larger point. `count` is the number of points
+    /// of the space.
+    pub fn finish(&mut self, count: usize) {
+        self.number_points(count);
+        let points = self.points;
         let target = |half: &Half| self.halves[half.next as usize].at;
         let ends = self.halves.iter().map(|half| (half.at, target(half)));
         let ends: Vec<(u32, u32)> = ends.map(|(a, b)| (a.min(b), a.max(b))).collect();
-        self.places = vec![];
         let mut fill = vec![0u32; points + 1];
         ends.iter().for_each(|&(low, _)| fill[low as usize + 1] += 1);
         (0..points).for_each(|i| fill[i + 1] += fill[i]);
@@ -197,6 +185,20 @@ impl Complex {
             self.edge_ends.push(incident.len() as u32);
         }
         self.incident = incident;
+    }
+
+    /// Gives the points met places of their own.
+    fn number_points(&mut self, count: usize) {
+        // One more than the place of each point.
+        let mut places = vec![0; count];
+        for half in &mut self.halves {
+            let place = &mut places[half.origin as usize];
+            if *place == 0 {
+                self.points += 1;
+                *place = self.points as u32;
+            }
+            half.at = *place - 1;
+        }
     }
 
     /// Sorts half-edges along one edge by the angle of their cells around it, counter-clockwise seen

@@ -156,6 +156,22 @@ impl Facets {
         found
     }
 
+    /// Finds the supports of all edges of a facet.
+    pub fn find_supports(&mut self, facet: u32, space: &mut Space) {
+        let (plane, _) = self.plane(facet, space);
+        let ranges: Vec<_> = self.ranges(facet).collect();
+        for range in ranges {
+            let mut after = self.corners[range.start];
+            for place in range.rev() {
+                let corner = self.corners[place];
+                if self.supports[place] == NONE {
+                    self.supports[place] = space.support(corner, after, plane);
+                }
+                after = corner;
+            }
+        }
+    }
+
     /// The plane of a facet, if it was asked for before.
     pub fn known_plane(&self, facet: u32) -> Option<(u32, bool)> {
         self.list[facet as usize].plane

@@ -6,6 +6,8 @@
 
 use std::cmp::Ordering;
 
+use rayon::prelude::*;
+
 use super::{
     facet::Facets,
     hierarchy::{Bounds, Hierarchy},
@@ -38,19 +40,55 @@ pub(super) struct Meetings {
     pub grouped: Vec<bool>,
 }
 
-/// Finds all traces that the given pairs of facets leave on each other.
+/// Finds all traces that the given pairs of facets leave on each other. The planes of all facets in
+/// pairs are known afterwards.
 pub(super) fn meetings(facets: &mut Facets, pairs: &[(u32, u32)], space: &mut Space) -> Meetings {
+    for facet in pairs.iter().flat_map(|&(f, g)| [f, g]) {
+        facets.plane(facet, space);
+    }
     let count = facets.list().len();
     let mut meetings =
         Meetings { traces: vec![], coplanar: Sets::new(count), grouped: vec![false; count] };
     let mut scratch = Scratch::default();
-    for &(f, g) in pairs {
-        compare(f, g, facets, space, &mut meetings, &mut scratch);
+    for (pair, finding) in findings(pairs, facets, space) {
+        let (f, g) = pairs[pair as usize];
+        meetings.add((f, g), finding, facets, space, &mut scratch);
     }
     extra_points(facets, &mut meetings.traces);
     meetings.traces.sort_unstable();
     meetings.traces.dedup();
     meetings
+}
+
+/// What two facets whose boxes touch do to each other.
+enum Finding {
+    /// They lie in one plane.
+    Coplanar,
+    /// They have a segment in common, which ends at these crossings; whether of the first facet.
+    Segment([(bool, Crossing); 2]),
+    /// They may have something in common.
+    Involved,
+}
+
+/// Pairs that are looked at together by one thread.
+const CHUNK: usize = 512;
+
+/// What pairs of facets do to each other, where they do; nothing is changed by looking.
+fn findings(pairs: &[(u32, u32)], facets: &Facets, space: &Space) -> Vec<(u32, Finding)> {
+    let look = |(number, chunk): (usize, &[(u32, u32)])| {
+        let (mut scratch, mut found) = (Scratch::default(), vec![]);
+        for (pair, &(f, g)) in (number * CHUNK..).zip(chunk) {
+            if let Some(finding) = finding((f, g), facets, space, &mut scratch) {
+                found.push((pair as u32, finding));
+            }
+        }
+        found
+    };
+    if pairs.len() <= CHUNK {
+        return look((0, pairs));
+    }
+    let chunks: Vec<Vec<(u32, Finding)>> = pairs.par_chunks(CHUNK).enumerate().map(look).collect();
+    chunks.into_iter().flatten().collect()
 }
 
 /// Pairs of facets whose boxes touch, in a fixed order. Facets of one operand are compared only if
@@ -136,60 +174,105 @@ struct Event {
     below: bool,
 }
 
-fn compare(
-    f: u32,
-    g: u32,
-    facets: &mut Facets,
-    space: &mut Space,
-    meetings: &mut Meetings,
+/// What two facets do to each other.
+fn finding(
+    (f, g): (u32, u32),
+    facets: &Facets,
+    space: &Space,
     scratch: &mut Scratch,
-) {
-    let (p, _) = facets.plane(f, space);
-    let (q, _) = facets.plane(g, space);
+) -> Option<Finding> {
+    let (p, q) = (known_plane(f, facets), known_plane(g, facets));
     if p == q {
-        meetings.coplanar.join(f, g);
-        meetings.grouped[f as usize] = true;
-        meetings.grouped[g as usize] = true;
-        return;
+        return Some(Finding::Coplanar);
     }
-    let [offsets_f, offsets_g] = &mut scratch.offsets;
-    if !straddles(f, q, facets, space, offsets_f) || !straddles(g, p, facets, space, offsets_g) {
-        return;
-    }
-    let line = space.line(p, q);
-    if line == [0; 3] {
-        return;
-    }
-    let axis = main_axis(line);
-    let [crossings_f, crossings_g] = &mut scratch.crossings;
-    collect(f, axis, facets, space, offsets_f, crossings_f);
-    collect(g, axis, facets, space, offsets_g, crossings_g);
+    scratch.cross((f, g), facets, space)?;
+    let [crossings_f, crossings_g] = &scratch.crossings;
     let hull = |crossings: &[Crossing]| {
         let ranges = crossings.iter().map(|c| c.range);
         ranges.reduce(|all, range| (all.0.min(range.0), all.1.max(range.1))).unwrap_or((1.0, 0.0))
     };
     let (hull_f, hull_g) = (hull(crossings_f), hull(crossings_g));
     if hull_f.1 < hull_g.0 || hull_g.1 < hull_f.0 {
-        return;
+        return None;
     }
-    let (owner_f, owner_g) = (facets.list()[f as usize].owner, facets.list()[g as usize].owner);
-    let mut leave = |a, b| {
-        meetings.traces.push(Trace { facet: f, a, b, support: q, owner: owner_g });
-        meetings.traces.push(Trace { facet: g, a, b, support: p, owner: owner_f });
-    };
-    if let Some([from, to]) = between(crossings_f, crossings_g) {
-        let mut point = |from_f: bool, crossing: Crossing| {
-            let (own, other) = if from_f { (p, q) } else { (q, p) };
-            crossing.point(own, other, space)
-        };
-        let (a, b) = (point(from.0, from.1), point(to.0, to.1));
-        leave(a, b);
-        return;
+    Some(between(crossings_f, crossings_g).map_or(Finding::Involved, Finding::Segment))
+}
+
+fn known_plane(facet: u32, facets: &Facets) -> u32 {
+    facets.known_plane(facet).expect("planes of facets in pairs were asked for").0
+}
+
+impl Scratch {
+    /// Finds where the boundaries of two facets in different planes meet the planes' line; the axis
+    /// along which it runs most. `None` where they do not, or where there is no line.
+    fn cross(&mut self, (f, g): (u32, u32), facets: &Facets, space: &Space) -> Option<usize> {
+        let (p, q) = (known_plane(f, facets), known_plane(g, facets));
+        let [offsets_f, offsets_g] = &mut self.offsets;
+        if !straddles(f, q, facets, space, offsets_f) || !straddles(g, p, facets, space, offsets_g)
+        {
+            return None;
+        }
+        let line = space.line(p, q);
+        if line == [0; 3] {
+            return None;
+        }
+        let axis = main_axis(line);
+        let [crossings_f, crossings_g] = &mut self.crossings;
+        collect(f, axis, facets, space, offsets_f, crossings_f);
+        collect(g, axis, facets, space, offsets_g, crossings_g);
+        Some(axis)
     }
-    let [events_f, events_g] = &mut scratch.events;
-    events(crossings_f, (p, q), axis, space, events_f);
-    events(crossings_g, (q, p), axis, space, events_g);
-    overlay(events_f, events_g, axis, space, leave);
+}
+
+impl Meetings {
+    /// Adds what two facets do to each other.
+    fn add(
+        &mut self,
+        (f, g): (u32, u32),
+        finding: Finding,
+        facets: &Facets,
+        space: &mut Space,
+        scratch: &mut Scratch,
+    ) {
+        let (p, q) = (known_plane(f, facets), known_plane(g, facets));
+        match finding {
+            Finding::Coplanar => {
+                self.coplanar.join(f, g);
+                self.grouped[f as usize] = true;
+                self.grouped[g as usize] = true;
+            }
+            Finding::Segment(ends) => {
+                let [a, b] = ends.map(|(of_first, crossing)| {
+                    let (own, other) = if of_first { (p, q) } else { (q, p) };
+                    crossing.point(own, other, space)
+                });
+                self.leave((f, g), (p, q), (a, b), facets);
+            }
+            Finding::Involved => {
+                let Some(axis) = scratch.cross((f, g), facets, space) else { return };
+                let ([crossings_f, crossings_g], [events_f, events_g]) =
+                    (&scratch.crossings, &mut scratch.events);
+                events(crossings_f, (p, q), axis, space, events_f);
+                events(crossings_g, (q, p), axis, space, events_g);
+                overlay(events_f, events_g, axis, space, |a, b| {
+                    self.leave((f, g), (p, q), (a, b), facets);
+                });
+            }
+        }
+    }
+
+    /// Adds a trace that two facets in two planes leave on each other.
+    fn leave(
+        &mut self,
+        (f, g): (u32, u32),
+        (p, q): (u32, u32),
+        (a, b): (u32, u32),
+        facets: &Facets,
+    ) {
+        let owner = |facet: u32| facets.list()[facet as usize].owner;
+        self.traces.push(Trace { facet: f, a, b, support: q, owner: owner(g) });
+        self.traces.push(Trace { facet: g, a, b, support: p, owner: owner(f) });
+    }
 }
 
 /// Fills in how far a facet's corners are from a plane; whether the plane meets the facet.

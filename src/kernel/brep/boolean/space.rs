@@ -135,6 +135,12 @@ impl Space {
         Some(point)
     }
 
+    /// The point where three planes meet, if it was [met](Space::meet) before.
+    pub fn known_meet(&self, mut planes: [u32; 3]) -> Option<u32> {
+        planes.sort_unstable();
+        self.meets.get(&planes).copied()
+    }
+
     fn met(&mut self, planes: [u32; 3]) -> Option<u32> {
         let [a, b, c] = planes.map(|plane| self.plane(plane));
         let exact = Meet::of(a, b, c)?;

@@ -70,10 +70,10 @@ fn assembled(
     patches: &Patches,
     space: &mut Space,
 ) -> Option<Polyhedron> {
-    let mut complex = Complex::new(space.point_count());
+    let mut complex = Complex::default();
     (0..facets.list().len() as u32).for_each(|facet| complex.add_whole(facet, facets));
     complex.add_patches(std::iter::empty());
-    complex.finish();
+    complex.finish(space.point_count());
     let borders = Borders(vec![]);
     let links = Links::of(&complex, &borders, facets, space);
     let sides = Sides::of_surface(&complex, links);
