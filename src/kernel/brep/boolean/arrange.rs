@@ -3,8 +3,8 @@
 //!
 //! Segments are split wherever they meet, equal pieces become one edge, the edges around every
 //! vertex are sorted by angle, and walking them gives the cells. Which facets cover a cell follows
-//! by crossing edges from the unbounded cell inwards. All decisions are exact. Planes are arranged at
-//! the same time; new points are numbered in between, so that the numbers depend on nothing else.
+//! by crossing edges from the unbounded cell inwards. All decisions are exact. Planes in
+//! which no new points arise are arranged at the same time.
 
 use rayon::prelude::*;
 
@@ -63,8 +63,8 @@ struct Arranger {
     points: Vec<u32>,
     /// Points that split segments, as pairs (segment, point).
     splits: Vec<(u32, u32)>,
-    /// Points that split segments but are not known, each by its three planes.
-    missing: Vec<[u32; 3]>,
+    /// Points that split two segments but are not known, each by its three planes.
+    missing: Vec<((u32, u32), [u32; 3])>,
     stops: Vec<u32>,
     pieces: Vec<Piece>,
     graph: Graph,
@@ -124,34 +124,47 @@ struct Planes<'a> {
     trusted: bool,
 }
 
-/// What comes of arranging some planes.
+/// What comes of arranging some planes at a time.
 #[derive(Default)]
 struct Arranged<'g> {
     complex: Complex,
     /// The groups left over.
     left: Vec<&'g Group>,
-    /// The points needed there, each by three planes.
-    missing: Vec<[u32; 3]>,
 }
 
 /// Planes that are arranged together by one thread.
 const CHUNK: usize = 64;
 
 impl Planes<'_> {
-    /// Cuts all facets of all planes. Where new points arise they are found after a first look.
+    /// Cuts all facets of all planes: at the same time those in which no new points arise, and then
+    /// the others.
     fn cut(&self, space: &mut Space, complex: &mut Complex) {
-        let first = self.look(&self.groups, space);
-        let mut left = vec![];
-        for part in first {
+        let (simple, mut left): (Vec<&Group>, Vec<&Group>) =
+            self.groups.iter().partition(|group| self.is_simple(group));
+        for part in self.look(&simple, space) {
             complex.append(part.complex);
-            for &[a, b, c] in &part.missing {
-                space.meet(a, b, c).expect("lines that cross meet in one point");
-            }
             left.extend(part.left);
         }
-        for part in self.look(&left, space) {
-            complex.append(part.complex);
+        let mut arranger = Arranger::default();
+        for group in left {
+            self.gather(group, &mut arranger, space);
+            arranger.split(space, self.trusted);
+            arranger.find_missing(space);
+            arranger.finish(self.facets, space, complex);
         }
+    }
+
+    /// Whether one facet is cut by one operand, so that nothing crosses inside of it.
+    fn is_simple(&self, group: &Group) -> bool {
+        let [(_, facet)] = group else { return false };
+        let traces = self.traces_on(*facet);
+        self.trusted && traces.iter().all(|trace| trace.owner == traces[0].owner)
+    }
+
+    /// The traces on a facet.
+    fn traces_on(&self, facet: u32) -> &[Trace] {
+        let [from, to] = [0, 1].map(|i| self.starts[facet as usize + i] as usize);
+        &self.traces[from..to]
     }
 
     /// Arranges the planes of groups, as far as all points are known.
@@ -164,7 +177,6 @@ impl Planes<'_> {
                 if arranger.missing.is_empty() {
                     arranger.finish(self.facets, space, &mut part.complex);
                 } else {
-                    part.missing.append(&mut arranger.missing);
                     part.left.push(group);
                 }
             }
@@ -179,10 +191,7 @@ impl Planes<'_> {
 
     fn gather(&self, group: &Group, arranger: &mut Arranger, space: &Space) {
         let facets = group.iter().map(|g| g.1);
-        let traces = facets.clone().flat_map(|facet| {
-            let [from, to] = [0, 1].map(|i| self.starts[facet as usize + i] as usize);
-            &self.traces[from..to]
-        });
+        let traces = facets.clone().flat_map(|facet| self.traces_on(facet));
         arranger.gather(facets, traces, self.facets, space);
     }
 }
@@ -249,7 +258,7 @@ impl Arranger {
         let mut pair = |s: u32, t: u32| {
             let (first, second) = (&segments[s as usize], &segments[t as usize]);
             if let Some(planes) = split_pair((s, first), (t, second), graph.plane, space, splits) {
-                missing.push(planes);
+                missing.push(((s, t), planes));
             }
         };
         if segments.len() > FEW {
@@ -280,6 +289,14 @@ impl Arranger {
             for (s, segment) in (0u32..).zip(&*segments).filter(|s| s.1.bounds.meets(&bounds)) {
                 split_at(s, segment, point, space, splits);
             }
+        }
+    }
+
+    /// Finds the points that are missing.
+    fn find_missing(&mut self, space: &mut Space) {
+        for ((s, t), [a, b, c]) in self.missing.drain(..) {
+            let point = space.meet(a, b, c).expect("lines that cross meet in one point");
+            self.splits.extend([(s, point), (t, point)]);
         }
     }
 

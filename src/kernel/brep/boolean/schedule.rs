@@ -37,9 +37,9 @@ pub(super) fn stages(expression: &Expression, boxes: &[Bounds]) -> Vec<Stage> {
     schedule.done
 }
 
-/// Largest number of pairs of operands in one stage that overlap each other and a third one: four
+/// Largest number of pairs of operands in one stage that overlap each other and a third one: three
 /// solids that all overlap are the most for which one arrangement pays.
-const CROWD: usize = 3;
+const CROWD: usize = 1;
 
 struct Schedule<'a> {
     boxes: &'a [Bounds],
