@@ -49,10 +49,10 @@ pub(super) fn meetings(facets: &mut Facets, pairs: &[(u32, u32)], space: &mut Sp
     let count = facets.list().len();
     let mut meetings =
         Meetings { traces: vec![], coplanar: Sets::new(count), grouped: vec![false; count] };
-    let mut scratch = Scratch::default();
+    let mut events = [vec![], vec![]];
     for (pair, finding) in findings(pairs, facets, space) {
         let (f, g) = pairs[pair as usize];
-        meetings.add((f, g), finding, facets, space, &mut scratch);
+        meetings.add((f, g), finding, facets, space, &mut events);
     }
     extra_points(facets, &mut meetings.traces);
     meetings.traces.sort_unstable();
@@ -66,8 +66,16 @@ enum Finding {
     Coplanar,
     /// They have a segment in common, which ends at these crossings; whether of the first facet.
     Segment([(bool, Crossing); 2]),
-    /// They may have something in common.
-    Involved,
+    /// They may have more in common, which follows from where each meets the line.
+    Involved(Box<Involved>),
+}
+
+/// Where two facets meet the line of their planes.
+struct Involved {
+    /// The axis along which the line runs most.
+    axis: usize,
+    /// Where the first facet meets it, and where the second.
+    crossings: [Vec<Crossing>; 2],
 }
 
 /// Pairs that are looked at together by one thread.
@@ -147,7 +155,6 @@ fn extra_points(facets: &Facets, traces: &mut Vec<Trace>) {
 struct Scratch {
     offsets: [Vec<Offset>; 2],
     crossings: [Vec<Crossing>; 2],
-    events: [Vec<Event>; 2],
 }
 
 /// Where a facet's boundary meets a line, not yet found: at a corner, or inside an edge.
@@ -185,7 +192,7 @@ fn finding(
     if p == q {
         return Some(Finding::Coplanar);
     }
-    scratch.cross((f, g), facets, space)?;
+    let axis = scratch.cross((f, g), facets, space)?;
     let [crossings_f, crossings_g] = &scratch.crossings;
     let hull = |crossings: &[Crossing]| {
         let ranges = crossings.iter().map(|c| c.range);
@@ -195,7 +202,13 @@ fn finding(
     if hull_f.1 < hull_g.0 || hull_g.1 < hull_f.0 {
         return None;
     }
-    Some(between(crossings_f, crossings_g).map_or(Finding::Involved, Finding::Segment))
+    Some(match between(crossings_f, crossings_g) {
+        Some(ends) => Finding::Segment(ends),
+        None => {
+            let crossings = scratch.crossings.clone();
+            Finding::Involved(Box::new(Involved { axis, crossings }))
+        }
+    })
 }
 
 fn known_plane(facet: u32, facets: &Facets) -> u32 {
@@ -232,7 +245,7 @@ impl Meetings {
         finding: Finding,
         facets: &Facets,
         space: &mut Space,
-        scratch: &mut Scratch,
+        events_of: &mut [Vec<Event>; 2],
     ) {
         let (p, q) = (known_plane(f, facets), known_plane(g, facets));
         match finding {
@@ -248,10 +261,9 @@ impl Meetings {
                 });
                 self.leave((f, g), (p, q), (a, b), facets);
             }
-            Finding::Involved => {
-                let Some(axis) = scratch.cross((f, g), facets, space) else { return };
-                let ([crossings_f, crossings_g], [events_f, events_g]) =
-                    (&scratch.crossings, &mut scratch.events);
+            Finding::Involved(involved) => {
+                let Involved { axis, crossings: [crossings_f, crossings_g] } = &*involved;
+                let (axis, [events_f, events_g]) = (*axis, events_of);
                 events(crossings_f, (p, q), axis, space, events_f);
                 events(crossings_g, (q, p), axis, space, events_g);
                 overlay(events_f, events_g, axis, space, |a, b| {
