@@ -3,17 +3,26 @@
 //! A whole tree of unions, differences and intersections is evaluated in one arrangement:
 //!
 //! 1. [`frame`] moves placements out of the operation and flattens it: leaves, one expression.
-//! 2. [`lattice`] chooses a decimal lattice; [`facet`] snaps the faces of all leaves to it.
-//!    Faces of large leaves that no other leaf comes near stay out of the arrangement ([`patch`]).
+//! 2. [`lattice`] chooses a decimal lattice; [`facet`] snaps the faces of all leaves to it, and
+//!    [`place`] remembers where corners come from. Faces of large leaves that no other leaf touches
+//!    stay out of the arrangement ([`patch`]).
 //! 3. [`space`] numbers planes and points: coplanar means the same number, and so does coincident.
-//! 4. [`intersect`] finds pairs of facets that meet ([`hierarchy`]) and the traces they leave.
-//! 5. [`arrange`] (with [`nesting`]) cuts everything in one plane into cells; facets that nothing
-//!    touches stay whole. [`cells`] holds all cells and links them along edges.
-//! 6. [`classify`] spreads winding numbers over the regions of space between cells, from one known
-//!    region for every connected component ([`seed`]), and asks the [`expression`] on both sides.
+//! 4. [`intersect`] finds pairs of facets that meet ([`hierarchy`], [`grid`]) and the traces they
+//!    leave.
+//! 5. [`arrange`] (with [`graph`] and [`nesting`]) cuts everything in one plane into cells; facets
+//!    that nothing touches stay whole. [`cells`] holds all cells and links them along edges.
+//! 6. [`classify`] spreads winding numbers over the regions of space between cells ([`region`]), from
+//!    one known region for every connected component ([`seed`]), and asks the [`expression`] on both
+//!    sides.
 //! 7. [`boundary`] keeps the cells whose sides differ, [`outline`] merges them into polygons and
 //!    splits where solids merely touch, [`assemble`] rounds the vertices, once, and builds the mesh;
 //!    [`carry`] adds the patches, and [`origins`] carries surfaces, tags and colours through.
+//!
+//! Where many leaves overlap in one place, most of what that would cut is hidden in others. Such an
+//! operation is evaluated in several [stages](stage) ([`schedule`], [`staged`]): each is an
+//! arrangement as above of what stages before it left, but cuts only what is near ([`rest`]), finds
+//! out where components stand by the surfaces themselves ([`locate`]), and leaves a surface whose
+//! corners are not rounded. Where stages cannot tell something, one arrangement of all does.
 //!
 //! Every decision is the exact sign of an integer expression (`geom::predicates` states the bit
 //! budget); doubles only filter. There is no tolerance. Coplanar and touching operands are ordinary:

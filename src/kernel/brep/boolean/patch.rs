@@ -276,8 +276,6 @@ fn wake_shared(mesh: &PolyMesh, points: &[Int3], resting: &mut [bool]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-
     /// A solid with patches in all places that matter gives what it gives without them.
     #[test]
     fn patches_change_nothing() {

@@ -192,3 +192,57 @@ fn is_crowded(boxes: Vec<Bounds>) -> bool {
     }
     false
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cube(low: [i32; 3], size: i32) -> Bounds {
+        Bounds { min: low, max: low.map(|c| c + size) }
+    }
+
+    fn leaves(count: u32) -> Vec<Expression> {
+        (0..count).map(Expression::Leaf).collect()
+    }
+
+    #[test]
+    fn a_plate_with_holes_is_one_stage() {
+        let holes = (0..100).map(|i| cube([10 * i, 0, 0], 8));
+        let boxes: Vec<Bounds> = [cube([0; 3], 1000)].into_iter().chain(holes).collect();
+        let stages = stages(&Expression::Difference(leaves(101)), &boxes);
+        assert_eq!(stages.len(), 1);
+        assert_eq!(stages[0].operands.len(), 101);
+    }
+
+    #[test]
+    fn a_crowd_takes_stages_that_use_every_leaf_once() {
+        let boxes: Vec<Bounds> = (0..40).map(|i| cube([i, 2 * i % 7, 3 * i % 5], 100)).collect();
+        let stages = stages(&Expression::Union(leaves(40)), &boxes);
+        assert!(stages.len() > 10, "{}", stages.len());
+        let mut used = vec![0; 40];
+        let mut results = vec![0; stages.len()];
+        for (number, stage) in stages.iter().enumerate() {
+            for operand in &stage.operands {
+                match *operand {
+                    Operand::Leaf(leaf) => used[leaf as usize] += 1,
+                    Operand::Stage(before) => {
+                        assert!((before as usize) < number);
+                        results[before as usize] += 1;
+                    }
+                }
+            }
+        }
+        assert!(used.iter().all(|&count| count == 1));
+        assert!(results[..stages.len() - 1].iter().all(|&count| count == 1));
+    }
+
+    #[test]
+    fn a_long_row_of_steps_is_cut_into_stages() {
+        let boxes: Vec<Bounds> = (0..1000).map(|i| cube([20 * i, 0, 0], 10)).collect();
+        let row = (1..1000).fold(Expression::Leaf(0), |row, leaf| {
+            Expression::Union(vec![row, Expression::Leaf(leaf)])
+        });
+        let stages = stages(&row, &boxes);
+        assert!(stages.len() > 1 && stages.iter().all(|s| s.operands.len() < 200));
+    }
+}

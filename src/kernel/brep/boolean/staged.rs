@@ -81,3 +81,53 @@ fn assembled(
     let assembly = Assembly { plan, patches, borders, places, facets, space, complex, sides };
     assembly.solid().ok()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use glam::{DMat3, DQuat, DVec3, EulerRot, dvec3};
+
+    use super::super::{Tree, arranged, frame::plan};
+    use crate::{
+        geom::Placement,
+        kernel::brep::{Polyhedron, measure, primitive::cuboid, primitive::sphere},
+    };
+
+    /// What stages leave is what one arrangement of all leaves.
+    #[test]
+    fn stages_change_nothing() {
+        let bar = Arc::new(cuboid(dvec3(-5.0, -3.0, -2.0), dvec3(5.0, 3.0, 2.0)));
+        let ball = Arc::new(sphere(4.0, 12));
+        let part = |solid: &Arc<Polyhedron>, i: usize| {
+            let turn = |k: usize| (i * k % 23) as f64;
+            let turned = DQuat::from_euler(EulerRot::XYZ, turn(3), turn(5), turn(7));
+            let offset = dvec3(turn(11), turn(13), turn(17)) / 3.0 - DVec3::splat(3.5);
+            let placement = Placement::new(DMat3::from_quat(turned), offset);
+            Tree::Placed(placement, Box::new(Tree::Leaf(solid.clone())))
+        };
+        let solid = |i: usize| part(if i % 3 == 0 { &ball } else { &bar }, i);
+        let chain = (1..14).fold(solid(0), |tree, i| match i % 3 {
+            0 => Tree::Union(vec![tree, solid(i)]),
+            1 => Tree::Difference(vec![Tree::Union(vec![tree, solid(i + 20)]), solid(i)]),
+            _ => Tree::Intersection(vec![tree, Tree::Union(vec![solid(i), solid(i + 30)])]),
+        });
+        let trees = [
+            Tree::Union((0..14).map(solid).collect()),
+            Tree::Difference((0..10).map(solid).collect()),
+            Tree::Intersection(vec![solid(0), Tree::Union((1..9).map(solid).collect())]),
+            chain,
+        ];
+        for tree in trees {
+            let plan = plan(&tree, &Placement::IDENTITY).expect("a plan");
+            let [stages, once] = [true, false].map(|trusted| {
+                let found = arranged(&plan, trusted, false).expect("finite");
+                found.expect("the solids do not cross themselves").solid
+            });
+            let volumes = [&stages, &once].map(measure::volume);
+            assert!((volumes[0] - volumes[1]).abs() <= 1e-7 * volumes[1].max(1.0), "{volumes:?}");
+            assert_eq!(stages.mesh().triangle_count(), once.mesh().triangle_count());
+            assert_eq!(measure::euler(&stages), measure::euler(&once));
+        }
+    }
+}
