@@ -16,10 +16,7 @@ use super::{
     place::Places,
     space::{NONE, Space},
 };
-use crate::{
-    geom::PolyMesh,
-    kernel::brep::polyhedron::{Defect, Polyhedron},
-};
+use crate::{geom::PolyMesh, kernel::brep::polyhedron::Polyhedron};
 
 /// What the result is assembled from.
 pub(super) struct Assembly<'a> {
@@ -34,10 +31,14 @@ pub(super) struct Assembly<'a> {
 }
 
 impl Assembly<'_> {
-    /// The result, placed.
-    pub fn solid(&self) -> Result<Polyhedron, Defect> {
+    /// The result, placed; `None` if it is not closed, which means that the operands contradict
+    /// themselves.
+    pub fn solid(&self) -> Option<Polyhedron> {
         let mut labels = Labels::new(self.plan, self.facets);
         let boundary = Boundary::of(self.complex, self.sides, &mut labels);
+        if boundary.is_open(self.borders) {
+            return None;
+        }
         let outline = Outline::of(&boundary, self.borders, self.complex);
         let dropped = outline.dropped((&boundary, self.borders), self.complex, self.space);
         let mut mesh = PolyMesh::default();
@@ -56,7 +57,7 @@ impl Assembly<'_> {
         if self.plan.frame.mirrors() {
             mesh.flip();
         }
-        Polyhedron::seamed(mesh, faces, points)
+        Polyhedron::seamed(mesh, faces, points).ok()
     }
 
     /// Every loop as mesh points, and for every edge a number that both its sides share; and a mesh

@@ -7,6 +7,7 @@ use super::{
     cells::Complex,
     classify::{Sides, following_side},
     origins::{Key, Labels},
+    patch::Borders,
     space::NONE,
     union_find::Sets,
 };
@@ -51,6 +52,12 @@ impl Boundary {
             link_crowded(around, complex, sides, &polygon, &mut twin);
         }
         Boundary { origin, at, next, twin, polygon, keys, up, touches: !crowded.is_empty() }
+    }
+
+    /// Whether something is missing along an edge: what should bound the result is open there.
+    pub fn is_open(&self, borders: &Borders) -> bool {
+        let mut outer = self.outer().filter(|&half| self.twin[half as usize] == NONE);
+        outer.any(|half| borders.patch(self.origin[half as usize]).is_none())
     }
 
     /// Whether a half-edge runs inside a merged polygon.

@@ -64,6 +64,8 @@ pub(super) struct Facets {
     pub extra: FxHashMap<(u32, u32), Vec<u32>>,
     /// Whether a facet was dropped.
     pub has_dropped: bool,
+    /// Whether corners of a face have become one: the lattice is too coarse for a leaf.
+    pub has_collapsed: bool,
 }
 
 impl Facets {
@@ -82,6 +84,7 @@ impl Facets {
             facets.add_leaf(leaf, &points, space, &mut dropped);
         }
         facets.has_dropped = !dropped.is_empty();
+        facets.has_collapsed |= facets.has_dropped;
         facets.register(&dropped, space);
         (facets, sources)
     }
@@ -203,6 +206,8 @@ impl Facets {
         let loops: Vec<Vec<u32>> = face.loops().map(|l| snapped_loop(l, points, mirrors)).collect();
         let flat = loops.iter().all(|l| l.len() >= 3) && polygon::is_flat(&loops, &at);
         let source = Source { leaf, face: face.index() as u32, flat, flipped: false };
+        let corners = loops.iter().map(Vec::len).sum::<usize>();
+        self.has_collapsed |= corners < face.loops().map(<[u32]>::len).sum();
         if flat {
             self.push_corners(source, &loops, space);
             return;

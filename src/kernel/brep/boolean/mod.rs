@@ -234,6 +234,6 @@ fn arranged(plan: &Plan, trusted: bool, resting: bool) -> Result<Option<Evaluate
     let (facets, space, complex, sides) = (&facets, &space, &complex, &sides);
     let (patches, borders, places) = (&patches, &borders, &places);
     let assembly = Assembly { plan, patches, borders, places, facets, space, complex, sides };
-    let Ok(solid) = assembly.solid() else { return Ok(None) };
+    let Some(solid) = assembly.solid() else { return Ok(None) };
     Ok(Some(Evaluated { solid, snap: plan.snap.max(sources.snap), step: lattice.step() }))
 }

@@ -219,7 +219,7 @@ mod tests {
         let boxes: Vec<Bounds> = (0..40).map(|i| cube([i, 2 * i % 7, 3 * i % 5], 100)).collect();
         let stages = stages(&Expression::Union(leaves(40)), &boxes);
         assert!(stages.len() > 10, "{}", stages.len());
-        let mut used = vec![0; 40];
+        let mut used = [0; 40];
         let mut results = vec![0; stages.len()];
         for (number, stage) in stages.iter().enumerate() {
             for operand in &stage.operands {

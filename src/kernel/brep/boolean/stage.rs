@@ -48,7 +48,7 @@ pub(super) fn evaluate(
         let inside = [sides.inside[2 * cell], sides.inside[2 * cell + 1]];
         keep(patch, inside, operands, &mut result);
     }
-    add_cells(&complex, &sides, &rest.borders, (plan, &facets, space), &mut result);
+    add_cells(&complex, &sides, &rest.borders, (plan, &facets, space), &mut result)?;
     result.end_owner();
     Some(result)
 }
@@ -115,16 +115,20 @@ fn keep(resting: &Resting, inside: [bool; 2], operands: &[Facets], result: &mut 
     }
 }
 
-/// Adds the cells whose sides differ, merged where they are of one source in one plane.
+/// Adds the cells whose sides differ, merged where they are of one source in one plane. `None` where
+/// that leaves an edge open.
 fn add_cells(
     complex: &Complex,
     sides: &Sides,
     borders: &Borders,
     (plan, facets, space): (&Plan, &Facets, &Space),
     result: &mut Facets,
-) {
+) -> Option<()> {
     let mut labels = Labels::exact(plan, facets);
     let boundary = Boundary::of(complex, sides, &mut labels);
+    if boundary.is_open(borders) {
+        return None;
+    }
     let outline = Outline::of(&boundary, borders, complex);
     let dropped = outline.dropped((&boundary, borders), complex, space);
     let mut corners: Vec<(u32, u32)> = vec![];
@@ -154,6 +158,7 @@ fn add_cells(
         let source = source(run[0].polygon, &boundary, complex, facets);
         result.push(source, run.len(), plane, space);
     }
+    Some(())
 }
 
 /// The face that a cell of the result is made of.

@@ -23,7 +23,7 @@ pub(super) fn evaluate(
     (facets, sources, patches): (&Facets, &Sources, &Patches),
     space: &mut Space,
 ) -> Option<Polyhedron> {
-    if plan.leaves.len() < 3 || facets.has_dropped {
+    if plan.leaves.len() < 3 || facets.has_collapsed {
         return None;
     }
     let leaves: Vec<Facets> =
@@ -79,7 +79,7 @@ fn assembled(
     let sides = Sides::of_surface(&complex, links);
     let (complex, sides, borders) = (&complex, &sides, &borders);
     let assembly = Assembly { plan, patches, borders, places, facets, space, complex, sides };
-    assembly.solid().ok()
+    assembly.solid()
 }
 
 #[cfg(test)]
@@ -106,7 +106,7 @@ mod tests {
             let placement = Placement::new(DMat3::from_quat(turned), offset);
             Tree::Placed(placement, Box::new(Tree::Leaf(solid.clone())))
         };
-        let solid = |i: usize| part(if i % 3 == 0 { &ball } else { &bar }, i);
+        let solid = |i: usize| part(if i.is_multiple_of(3) { &ball } else { &bar }, i);
         let chain = (1..14).fold(solid(0), |tree, i| match i % 3 {
             0 => Tree::Union(vec![tree, solid(i)]),
             1 => Tree::Difference(vec![Tree::Union(vec![tree, solid(i + 20)]), solid(i)]),
