@@ -1,0 +1,4 @@
+//! Drawings of scenes whose line lengths are known.
+
+mod figures;
+mod scenes;
