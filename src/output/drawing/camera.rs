@@ -217,6 +217,13 @@ impl Camera {
         (dvec2(v.dot(self.right), v.dot(self.up)) * k, k)
     }
 
+    /// How fast the image of a point moves when the point moves with a velocity.
+    pub(super) fn image_velocity(&self, p: DVec3, velocity: DVec3) -> DVec2 {
+        let (at, k) = self.image(p);
+        let straight = dvec2(velocity.dot(self.right), velocity.dot(self.up)) * k;
+        self.distance.map_or(straight, |d| straight + at * (velocity.dot(self.toward) * k / d))
+    }
+
     /// The image of a point; `None` when it is not in front of the eye.
     pub fn project(&self, p: DVec3) -> Option<DVec2> {
         (self.ahead(p) >= 0.0).then(|| self.image(p).0)

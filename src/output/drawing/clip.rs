@@ -3,9 +3,13 @@
 //! A facet hides of an edge what lies within its picture and behind its plane. Its sides cut the line of the
 //! edge in an even number of places, between which the edge runs in and out; the plane cuts it once.
 
+use glam::DVec3;
+
 use super::{
     cells::{Cells, Extent, Sieve},
-    lattice::Scanline,
+    field::Field,
+    lattice::{Plane, Scanline},
+    links::NONE,
     model::{Edge, Facet, Model},
     span::{Span, Step, spans},
 };
@@ -72,25 +76,71 @@ impl<'a> Clipper<'a> {
         }
     }
 
-    /// How many facets are in front of an edge at t; the edge runs along `line`.
-    pub fn order_at(&self, edge: &Edge, line: &Scanline, t: f64, cuts: &mut Vec<f64>) -> u32 {
-        let [p, q] = [edge.a, edge.b].map(|i| self.model.at[i as usize]);
-        let at = p.lerp(q, t);
+    /// How many facets are in front of an edge at t; the edge runs along `line`. `on` is the true point there if the
+    /// edge is a chord.
+    pub fn order_at(
+        &self,
+        edge: &Edge,
+        line: &Scanline,
+        t: f64,
+        on: Option<DVec3>,
+        cuts: &mut Vec<f64>,
+    ) -> u32 {
+        let at = line.at(t);
         let mut order = 0;
         self.cells.at(at, |i| {
             let facet = &self.model.facets[i as usize];
             let apart = (facet.min - 1.0).cmpgt(at) | (at - 1.0).cmpgt(facet.max);
-            if apart.any() {
-                return;
-            }
-            let [a, b] = self.model.heights(edge, &facet.plane);
-            if a + (b - a) * t < 0.0 {
+            if !apart.any() && self.hides(facet, edge, t, on) {
                 crossings(self.model, line, facet, cuts);
                 order += cuts.iter().filter(|&&c| c < t).count() as u32 & 1;
             }
         });
         order
     }
+
+    /// Whether the surface of a facet is in front of an edge at t.
+    fn hides(&self, facet: &Facet, edge: &Edge, t: f64, on: Option<DVec3>) -> bool {
+        if facet.field == NONE && on.is_none() {
+            let [a, b] = self.model.heights(edge, &facet.plane);
+            return a + (b - a) * t < 0.0;
+        }
+        let p = on.unwrap_or_else(|| self.model.point_on(edge, t));
+        let Some(field) = self.model.fields.get(facet.field as usize) else {
+            return facet.plane.distance(p) < -self.model.contact;
+        };
+        let sight = self.model.camera.sight(p).normalize_or_zero();
+        let own = self.model.curves.get(edge.curve as usize).is_some_and(|c| c.lies_on(field));
+        let contact = if own { field.radius() * OWN } else { self.model.bound };
+        ahead(field, &facet.plane, p, sight) > contact
+    }
+}
+
+/// On its own surface, what is nearer than this part of the radius does not hide a point of a contour, whose
+/// sight line touches the surface.
+const OWN: f64 = 1.0 / 256.0;
+
+/// Newton's steps along a sight line, at most.
+const STEPS: usize = 24;
+
+/// How far along a sight line from `p` it meets the part of a surface that a plane stands for, mm.
+fn ahead(field: &Field, plane: &Plane, p: DVec3, sight: DVec3) -> f64 {
+    let slope = plane.normal.dot(sight);
+    let reach = field.radius() / 2.0;
+    let guess = -plane.distance(p) / slope;
+    let mut s = if slope.abs() > 0.01 && guess.is_finite() { guess } else { 0.0 };
+    for _ in 0..STEPS {
+        let local = field.local(p + sight * s);
+        let step = (local.value / local.normal.dot(sight)).clamp(-reach, reach);
+        if step.is_nan() {
+            return s;
+        }
+        s -= step;
+        if step.abs() <= f64::EPSILON * (s.abs() + reach) {
+            break;
+        }
+    }
+    s
 }
 
 /// The part of an edge, within 0..1, that is behind a plane, from the heights of its ends.

@@ -10,10 +10,15 @@
 //! | contour edge | [`Outline`] |
 //! | order of invisibility | [`Span::order`] |
 
+use glam::DVec3;
+
 use super::{
     cells::{Cells, Extent, Sieve},
+    chain::Chord,
     clip::Clipper,
-    lattice::Scanline,
+    lattice::{Scanline, Sighted},
+    links::NONE,
+    meet::{Strand, meet, nearer},
     model::{Edge, Model, Outline},
     span::{Span, Step, spans},
 };
@@ -47,7 +52,7 @@ impl<'a> Counter<'a> {
         Tally { sieve: Sieve::new(self.model.outlines.len()), steps: vec![], cuts: vec![] }
     }
 
-    /// Appends the spans of an edge that pierces no face.
+    /// Appends the spans of a straight edge that pierces no face.
     pub fn hide(&self, edge: &Edge, tally: &mut Tally, out: &mut Vec<Span>) {
         let [p, q] = [edge.a, edge.b].map(|i| self.model.at[i as usize]);
         let line = Scanline::new(p, q);
@@ -61,22 +66,144 @@ impl<'a> Counter<'a> {
         });
         steps.sort_unstable_by(|a, b| a.at.total_cmp(&b.at));
         let (seed, before) = widest(steps);
-        let order = self.clipper.order_at(edge, &line, seed, cuts) as i32;
+        let order = self.clipper.order_at(edge, &line, seed, None, cuts) as i32;
         spans(steps, order - before, self.model.dust / line.length(), out);
     }
 
     /// The change of the order where an edge crosses an outline in front of it.
     #[inline]
     fn step(&self, edge: &Edge, line: &Scanline, outline: &Outline) -> Option<Step> {
-        let [a, b] = [outline.a, outline.b].map(|i| line.sighted(self.model.at[i as usize]));
-        let at = line.crossing(a, b).filter(|t| *t > 0.0 && *t < 1.0)?;
-        let plane = &self.model.facets[outline.facet as usize].plane;
-        let [low, high] = self.model.heights(edge, plane);
-        // The facet is on the left of the outline: an outline that runs to the left of the edge has it behind.
-        let by = if b.side > 0.0 { -1 } else { 1 };
+        let (at, by, sighted) = self.crossing(line, outline)?;
+        let facet = &self.model.facets[outline.facet as usize];
+        if facet.field != NONE || outline.curve != NONE {
+            let (p, _) = self.true_crossing(edge, [edge.a, edge.b], at, outline, sighted)?;
+            let at = line.place(self.model.lattice.exact(self.model.camera.image(p).0));
+            return Some(Step { at, by });
+        }
+        let [low, high] = self.model.heights(edge, &facet.plane);
         (low + (high - low) * at < 0.0).then_some(Step { at, by })
     }
+
+    /// Where an outline crosses a line within 0..1, and the change of the order there.
+    #[inline]
+    fn crossing(&self, line: &Scanline, outline: &Outline) -> Option<(f64, i32, [Sighted; 2])> {
+        let [a, b] = [outline.a, outline.b].map(|i| line.sighted(self.model.at[i as usize]));
+        let at = line.crossing(a, b).filter(|t| *t >= 0.0 && *t < 1.0)?;
+        // The facet is on the left of the outline: an outline that runs to the left of the edge has it behind.
+        Some((at, if b.side > 0.0 { -1 } else { 1 }, [a, b]))
+    }
+
+    /// The point of an edge where its true curve crosses that of an outline in front of it, and its place on the chord;
+    /// the edge runs between `ends` and its chord crosses at `at`.
+    fn true_crossing(
+        &self,
+        edge: &Edge,
+        ends: [u32; 2],
+        at: f64,
+        outline: &Outline,
+        [a, b]: [Sighted; 2],
+    ) -> Option<(DVec3, f64)> {
+        let model = self.model;
+        if ends.contains(&outline.a) || ends.contains(&outline.b) {
+            return None;
+        }
+        let one = Strand::new(model, edge.curve, ends);
+        let other = Strand::new(model, outline.curve, [outline.a, outline.b]);
+        let s = model.place_in_space(ends, at);
+        let t = model.place_in_space([outline.a, outline.b], a.side / (a.side - b.side));
+        let points = meet(&model.camera, &one, s, &other, t);
+        let front = nearer(&model.camera, points) > model.bound * TOUCH;
+        front.then(|| (points[0], one.place(points[0])))
+    }
+
+    /// The spans of a chain of chords, by chord and place on it, and the true points where they meet.
+    pub fn hide_chain(&self, chain: &[Chord], tally: &mut Tally) -> Vec<Stretch> {
+        let Tally { sieve, cuts, .. } = tally;
+        let mut turns: Vec<Turn> = vec![];
+        for (number, chord) in chain.iter().enumerate() {
+            let edge = &self.model.edges[chord.edge as usize];
+            let [p, q] = chord.ends.map(|i| self.model.at[i as usize]);
+            if p == q {
+                continue;
+            }
+            let line = Scanline::new(p, q);
+            sieve.next_round();
+            self.cells.along(p, q, |i| {
+                if sieve.passes(i) {
+                    let outline = &self.model.outlines[i as usize];
+                    let turn = self.crossing(&line, outline).and_then(|(at, by, sighted)| {
+                        let (point, s) = self.true_crossing(edge, chord.ends, at, outline, sighted)?;
+                        Some(Turn { at: number as f64 + s, by, point })
+                    });
+                    turns.extend(turn);
+                }
+            });
+        }
+        turns.sort_unstable_by(|a, b| a.at.total_cmp(&b.at));
+        self.stretches(chain, &turns, cuts)
+    }
+
+    /// Counts along a chain from the middle of its widest gap.
+    fn stretches(&self, chain: &[Chord], turns: &[Turn], cuts: &mut Vec<f64>) -> Vec<Stretch> {
+        let end = chain.len() as f64;
+        let steps: Vec<Step> = turns.iter().map(|t| Step { at: t.at / end, by: t.by }).collect();
+        let (seed, before) = widest(&steps);
+        let mut order = self.order_on(chain, seed * end, cuts) as i32 - before;
+        let mut out: Vec<Stretch> = vec![];
+        let mut from = (0.0, self.model.space[chain[0].ends[0] as usize]);
+        let last = (end, self.model.space[chain[chain.len() - 1].ends[1] as usize]);
+        let marks = turns.iter().map(|t| (t.at, t.point, t.by)).chain([(last.0, last.1, 0)]);
+        for (at, point, by) in marks {
+            let to = (at, point);
+            if to.1.distance(from.1) > self.model.contact || at - from.0 > 1.0 {
+                let seen = order.max(0) as u32;
+                match out.last_mut() {
+                    Some(s) if s.order == seen => s.to = to,
+                    _ => out.push(Stretch { from, to, order: seen }),
+                }
+                from = to;
+            }
+            order += by;
+        }
+        out
+    }
+
+    /// The order of a chain at a place, from a sight line.
+    fn order_on(&self, chain: &[Chord], at: f64, cuts: &mut Vec<f64>) -> u32 {
+        let number = (at as usize).min(chain.len() - 1);
+        let chord = chain[number];
+        let edge = &self.model.edges[chord.edge as usize];
+        let [p, q] = chord.ends.map(|i| self.model.at[i as usize]);
+        if p == q {
+            return 0;
+        }
+        let strand = Strand::new(self.model, edge.curve, chord.ends);
+        let t = (at - number as f64).clamp(0.0, 1.0);
+        let on = strand.at(&self.model.camera, self.model.place_in_space(chord.ends, t));
+        self.clipper.order_at(edge, &Scanline::new(p, q), t, Some(on), cuts)
+    }
 }
+
+/// Where the order of a chain changes.
+struct Turn {
+    at: f64,
+    by: i32,
+    point: DVec3,
+}
+
+/// A part of a chain with the same order.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Stretch {
+    /// Where it begins: number of the chord and place on it, and the true point.
+    pub from: (f64, DVec3),
+    /// Where it ends.
+    pub to: (f64, DVec3),
+    /// Front faces before it.
+    pub order: u32,
+}
+
+/// Curves that are nearer to each other than this part of the bound touch where their pictures cross.
+const TOUCH: f64 = 0.125;
 
 /// The middle of the widest gap between sorted steps, and the sum of the steps before it.
 fn widest(steps: &[Step]) -> (f64, i32) {

@@ -36,6 +36,12 @@ impl Lattice {
         ((p - self.origin) * self.scale).round() + DVec2::ZERO
     }
 
+    /// A point in millimetres as a place between lattice points.
+    #[inline]
+    pub fn exact(&self, p: DVec2) -> DVec2 {
+        (p - self.origin) * self.scale
+    }
+
     /// A place on the lattice, or between its points, in millimetres.
     #[inline]
     pub fn millimetres(&self, p: DVec2) -> DVec2 {
@@ -108,6 +114,16 @@ impl Scanline {
         }
         let t = (u.along * v.side - v.along * u.side) / (v.side - u.side);
         Some(t / self.length_squared)
+    }
+
+    /// The parameter of the point nearest to a place.
+    pub fn place(&self, p: DVec2) -> f64 {
+        (p - self.from).dot(self.along) / self.length_squared
+    }
+
+    /// The place at a parameter.
+    pub fn at(&self, t: f64) -> DVec2 {
+        self.from + self.along * t
     }
 
     /// Length in steps.

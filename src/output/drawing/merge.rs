@@ -17,21 +17,21 @@ pub struct Piece {
     pub from: DVec2,
     /// Where it ends.
     pub to: DVec2,
+    /// How it is drawn and whose it is.
+    pub mark: Mark,
+}
+
+/// How a line is drawn and whose it is; the smaller is the more important.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub struct Mark {
     /// How it is drawn.
     pub class: Class,
+    /// How many front faces are before it.
+    pub order: u32,
     /// What it stands for.
     pub kind: Kind,
     /// The body or stroke it belongs to.
     pub id: u32,
-    /// How many front faces are before it.
-    pub order: u32,
-}
-
-impl Piece {
-    /// Smaller is more important.
-    fn rank(&self) -> (Class, u32, Kind, u32) {
-        (self.class, self.order, self.kind, self.id)
-    }
 }
 
 /// A direction as a number in (-1, 1] that grows with its angle, opposite directions alike.
@@ -149,7 +149,7 @@ fn merge_line(pieces: &[Piece], group: &[u32], out: &mut Vec<Piece>) {
     let mut before = f64::NEG_INFINITY;
     for (at, ends, i) in events {
         if at > before {
-            let best = active.iter().map(|&k| &pieces[k as usize]).min_by_key(|p| p.rank());
+            let best = active.iter().map(|&k| &pieces[k as usize]).min_by_key(|p| p.mark);
             run.go_on(before, at, best, out);
             before = at;
         }
@@ -175,7 +175,7 @@ impl<'a> Run<'a> {
     /// Lengthens the piece up to a place, or begins another one.
     fn go_on(&mut self, from: f64, to: f64, best: Option<&'a Piece>, out: &mut Vec<Piece>) {
         let same = match (self.best, best) {
-            (Some(a), Some(b)) => a.rank() == b.rank(),
+            (Some(a), Some(b)) => a.mark == b.mark,
             (None, None) => true,
             _ => false,
         };
@@ -203,11 +203,12 @@ mod tests {
 
     fn piece(from: [f64; 2], to: [f64; 2], class: Class) -> Piece {
         let order = u32::from(class == Class::Hidden);
-        Piece { from: from.into(), to: to.into(), class, kind: Kind::Sharp, id: 0, order }
+        let mark = Mark { class, order, kind: Kind::Sharp, id: 0 };
+        Piece { from: from.into(), to: to.into(), mark }
     }
 
     fn length(pieces: &[Piece], class: Class) -> f64 {
-        pieces.iter().filter(|p| p.class == class).map(|p| length_squared(p).sqrt()).sum()
+        pieces.iter().filter(|p| p.mark.class == class).map(|p| length_squared(p).sqrt()).sum()
     }
 
     #[test]

@@ -17,27 +17,37 @@
 //! # Paper
 //! T. Nishita, hidden lines of sets of polyhedra by the order of invisibility (METHODS, section 3).
 
+mod arcs;
 mod camera;
 mod cells;
+mod chain;
 mod clip;
+mod conic;
 mod count;
 #[allow(clippy::module_inception, reason = "the noun is the file's")]
 mod drawing;
+mod field;
+mod fit;
 mod lattice;
 mod links;
+mod meet;
 mod merge;
 mod model;
 mod scene;
+mod smooth;
 mod span;
 
 pub use camera::{Camera, CameraError, View, Window};
 pub use drawing::{Class, Drawing, Line, Path, Segment};
 pub use scene::{Body, Hidden, Kind, Method, Options, Scene, Stroke};
 
+use arcs::ArcPiece;
 use clip::Clipper;
 use count::Counter;
-use merge::{Piece, merged};
-use model::Model;
+use fit::{Fitted, Shape};
+use links::NONE;
+use merge::{Mark, Piece};
+use model::{Edge, Model};
 use span::Span;
 
 /// Lines coincide on paper when they are nearer than this part of the picture's size: corners that set
@@ -50,88 +60,113 @@ const COINCIDENT: f64 = 1e-8;
 /// drawing without lines. The same input gives the same drawing whatever the number of threads.
 pub fn visible_lines(scene: &Scene, camera: &Camera, options: &Options) -> Drawing {
     let model = Model::new(scene, camera, options);
-    let spans = hidden_spans(&model, options.method);
-    let pieces = pieces(&model, &spans);
-    let (min, max) = cells::around(model.at.iter().copied());
-    let size = if min.x <= max.x { (max - min).max_element() / model.lattice.steps(1.0) } else { 0.0 };
-    assemble(&merged(&pieces, size * COINCIDENT), options.hidden)
+    let mut sheet = Sheet::default();
+    hide(&model, options.method, &mut sheet);
+    sheet.assemble(model.picture_size() * COINCIDENT, options.hidden)
 }
 
-/// The spans of every edge, and where each edge's begin.
-struct Spans {
-    starts: Vec<u32>,
-    spans: Vec<Span>,
+/// Lines before they are merged.
+#[derive(Default)]
+struct Sheet {
+    straight: Vec<Piece>,
+    arcs: Vec<ArcPiece>,
+    curves: Vec<(Path, Mark)>,
 }
 
-fn hidden_spans(model: &Model, method: Method) -> Spans {
+/// Puts all edges on the sheet.
+fn hide(model: &Model, method: Method, sheet: &mut Sheet) {
     let clipper = Clipper::new(model);
-    let mut all = Spans { starts: vec![0], spans: vec![] };
-    match method {
-        Method::Clip => {
-            let mut desk = clipper.desk();
-            all.collect(model, |edge, out| clipper.hide(edge, &mut desk, out));
+    let mut desk = clipper.desk();
+    let counter = Counter::new(model, &clipper);
+    let mut tally = counter.tally();
+    let mut spans = vec![];
+    let clip = method == Method::Clip;
+    for edge in &model.edges {
+        if edge.curve != NONE || model.at[edge.a as usize] == model.at[edge.b as usize] {
+            continue;
         }
-        Method::Auto | Method::Count => {
-            let counter = Counter::new(model, &clipper);
-            let mut tally = counter.tally();
-            all.collect(model, |edge, out| counter.hide(edge, &mut tally, out));
+        spans.clear();
+        if clip || model.pierces(edge) {
+            clipper.hide(edge, &mut desk, &mut spans);
+        } else {
+            counter.hide(edge, &mut tally, &mut spans);
+        }
+        sheet.add_spans(model, edge, &spans);
+    }
+    let tolerance = model.picture_size() * COINCIDENT;
+    for chain in chain::chains(model) {
+        let edge = &model.edges[chain[0].edge as usize];
+        let fitted = Fitted::new(model, &chain, tolerance);
+        for stretch in counter.hide_chain(&chain, &mut tally) {
+            sheet.add_shape(fitted.shape(&stretch), mark(edge, stretch.order));
         }
     }
-    all
 }
 
-impl Spans {
-    fn collect(&mut self, model: &Model, mut hide: impl FnMut(&model::Edge, &mut Vec<Span>)) {
-        for edge in &model.edges {
-            if model.at[edge.a as usize] != model.at[edge.b as usize] {
-                hide(edge, &mut self.spans);
-            }
-            self.starts.push(self.spans.len() as u32);
-        }
-    }
+/// How a part of an edge behind so many faces is drawn.
+fn mark(edge: &Edge, order: u32) -> Mark {
+    let class = match edge.kind {
+        Kind::Cutting => Class::Cutting,
+        Kind::Centre => Class::Centre,
+        _ if order == 0 => Class::Visible,
+        _ => Class::Hidden,
+    };
+    Mark { class, order, kind: edge.kind, id: edge.id }
 }
 
-/// The parts of all edges on paper.
-fn pieces(model: &Model, spans: &Spans) -> Vec<Piece> {
-    let mut pieces = Vec::with_capacity(spans.spans.len());
-    for (edge, range) in model.edges.iter().zip(spans.starts.windows(2)) {
+impl Sheet {
+    /// Adds the parts of a straight edge.
+    fn add_spans(&mut self, model: &Model, edge: &Edge, spans: &[Span]) {
         let [p, q] = [edge.a, edge.b].map(|i| model.at[i as usize]);
         let place = |t: f64| model.lattice.millimetres(p + (q - p) * t);
-        for span in &spans.spans[range[0] as usize..range[1] as usize] {
-            let class = match edge.kind {
-                Kind::Cutting => Class::Cutting,
-                Kind::Centre => Class::Centre,
-                _ if span.order == 0 => Class::Visible,
-                _ => Class::Hidden,
-            };
+        for span in spans {
             let (from, to) = (place(span.from), place(span.to));
-            pieces.push(Piece { from, to, class, kind: edge.kind, id: edge.id, order: span.order });
+            self.straight.push(Piece { from, to, mark: mark(edge, span.order) });
         }
     }
-    pieces
-}
 
-fn assemble(pieces: &[Piece], hidden: Hidden) -> Drawing {
-    let length = |class: Class| {
-        let of = pieces.iter().filter(|p| p.class == class);
-        of.map(|p| p.from.distance(p.to)).sum::<f64>()
-    };
-    let counted = |p: &&Piece| p.class <= Class::Hidden;
-    Drawing {
-        visible: length(Class::Visible),
-        hidden: length(Class::Hidden),
-        segments: pieces.iter().filter(counted).count(),
-        lines: pieces.iter().filter_map(|p| line(p, hidden)).collect(),
+    fn add_shape(&mut self, shape: Shape, mark: Mark) {
+        match shape {
+            Shape::Straight(from, to) => self.straight.push(Piece { from, to, mark }),
+            Shape::Arc(ellipse, from, to) => self.arcs.push(ArcPiece { ellipse, from, to, mark }),
+            Shape::Curve(path) => self.curves.push((path, mark)),
+        }
+    }
+
+    /// Merges what coincides within `tolerance` mm, measures, and keeps what is wanted.
+    fn assemble(self, tolerance: f64, hidden: Hidden) -> Drawing {
+        let straight = merge::merged(&self.straight, tolerance).into_iter().map(|p| {
+            (Path::of(p.from, Segment::Line { to: p.to }), p.mark)
+        });
+        let arcs = arcs::merged(&self.arcs, tolerance).into_iter().map(|a| {
+            let (from, to) = (a.from, a.to);
+            let conic::Ellipse { center, major, minor } = a.ellipse;
+            let arc = Segment::Arc { center, major, minor, from, to };
+            (Path::of(a.ellipse.at(from), arc), a.mark)
+        });
+        let mut drawing = Drawing::default();
+        for (path, mark) in straight.chain(arcs).chain(self.curves) {
+            drawing.add(path, mark, hidden);
+        }
+        drawing
     }
 }
 
-fn line(piece: &Piece, hidden: Hidden) -> Option<Line> {
-    let class = match (piece.class, hidden) {
-        (Class::Hidden, Hidden::Off) => return None,
-        (Class::Hidden, Hidden::Depth(most)) if piece.order <= most => Class::Visible,
-        (Class::Hidden, Hidden::Depth(_)) => return None,
-        (class, _) => class,
-    };
-    let path = Path::of(piece.from, Segment::Line { to: piece.to });
-    Some(Line { class, kind: piece.kind, id: piece.id, order: piece.order, path })
+impl Drawing {
+    /// Measures a line and keeps it if it is wanted.
+    fn add(&mut self, path: Path, mark: Mark, hidden: Hidden) {
+        match mark.class {
+            Class::Visible => self.visible += path.length(),
+            Class::Hidden => self.hidden += path.length(),
+            Class::Cutting | Class::Centre => {}
+        }
+        self.segments += usize::from(mark.class <= Class::Hidden);
+        let class = match (mark.class, hidden) {
+            (Class::Hidden, Hidden::Off) => return,
+            (Class::Hidden, Hidden::Depth(most)) if mark.order <= most => Class::Visible,
+            (Class::Hidden, Hidden::Depth(_)) => return,
+            (class, _) => class,
+        };
+        self.lines.push(Line { class, kind: mark.kind, id: mark.id, order: mark.order, path });
+    }
 }

@@ -5,9 +5,11 @@ use glam::{DVec2, DVec3};
 use super::{
     Camera,
     cells::around,
+    field::{Curve, Field},
     lattice::{Lattice, Plane},
     links::{self, Link, NONE, links},
     scene::{Kind, Options, Scene},
+    smooth,
 };
 use crate::geom::{PolyMesh, Surface};
 
@@ -17,6 +19,9 @@ const CONTACT: f64 = 1.0 / (1u64 << 26) as f64;
 
 /// Spans of edges shorter than this part of the picture are rounding: 64 lattice steps and more.
 const DUST: f64 = 1.0 / (1u64 << 38) as f64;
+
+/// Chords are this part of the modeller's tolerance off their curve at most.
+const CHORD: f64 = 0.25;
 
 /// Faces whose unit normals differ by less than this meet smoothly: rounded corners turn a plane of a few
 /// percent of the scene's size by 1e-7.
@@ -33,6 +38,8 @@ pub struct Facet {
     pub min: DVec2,
     /// See `min`.
     pub max: DVec2,
+    /// The true surface it stands for: a place in [`Model::fields`], or [`NONE`].
+    pub field: u32,
 }
 
 /// A line that is drawn where nothing hides it.
@@ -46,6 +53,8 @@ pub struct Edge {
     pub kind: Kind,
     /// The caller's number of its body or stroke.
     pub id: u32,
+    /// The curve it is a chord of: a place in [`Model::curves`], or [`NONE`].
+    pub curve: u32,
 }
 
 /// A side of a facet across which hiding begins or ends: not shared with another facet.
@@ -57,6 +66,8 @@ pub struct Outline {
     pub b: u32,
     /// The facet.
     pub facet: u32,
+    /// The curve it is a chord of: a place in [`Model::curves`], or [`NONE`].
+    pub curve: u32,
 }
 
 /// Points, hiding faces, lines to draw.
@@ -76,10 +87,20 @@ pub struct Model {
     pub outlines: Vec<Outline>,
     /// Lines to draw.
     pub edges: Vec<Edge>,
+    /// True surfaces of facets.
+    pub fields: Vec<Field>,
+    /// True curves of edges and outlines.
+    pub curves: Vec<Curve>,
+    /// Points where a chain of chords is cut although it goes on: cusps of contours.
+    pub cusps: Vec<u32>,
+    /// The camera.
+    pub camera: Camera,
     /// Picture to lattice.
     pub lattice: Lattice,
     /// Largest distance from a plane that is contact, mm.
     pub contact: f64,
+    /// How far chords may be off their curve, mm.
+    pub bound: f64,
     /// Largest length of a span that is dust, steps.
     pub dust: f64,
 }
@@ -97,16 +118,18 @@ struct Faces {
 impl Model {
     /// The model of a scene all of which is in front of the eye.
     pub fn new(scene: &Scene, camera: &Camera, options: &Options) -> Model {
-        let mut model = Model::placed(scene, camera);
+        let mut model = Model::placed(scene, camera, options);
         let mut base = 0;
         for body in &scene.bodies {
-            model.add_body(body.mesh, base, body.id, options);
+            if !smooth::add_body(&mut model, body, base, options) {
+                model.add_body(body.mesh, base, body.id, options);
+            }
             base += body.mesh.points.len() as u32;
         }
         for stroke in &scene.strokes {
             let corners = base..base + stroke.points.len() as u32;
             for (a, b) in corners.clone().zip(corners.skip(1)) {
-                model.edges.push(Edge { a, b, kind: stroke.kind, id: stroke.id });
+                model.edges.push(Edge { a, b, kind: stroke.kind, id: stroke.id, curve: NONE });
             }
             base += stroke.points.len() as u32;
         }
@@ -114,7 +137,7 @@ impl Model {
     }
 
     /// All points in space and on the lattice.
-    fn placed(scene: &Scene, camera: &Camera) -> Model {
+    fn placed(scene: &Scene, camera: &Camera, options: &Options) -> Model {
         let bodies = scene.bodies.iter().flat_map(|b| &b.mesh.points);
         let space: Vec<DVec3> =
             bodies.chain(scene.strokes.iter().flat_map(|s| &s.points)).copied().collect();
@@ -130,8 +153,13 @@ impl Model {
             sides: vec![],
             outlines: vec![],
             edges: vec![],
+            fields: vec![],
+            curves: vec![],
+            cusps: vec![],
+            camera: *camera,
             lattice,
             contact: size * CONTACT,
+            bound: options.tolerance.mm() * CHORD,
             dust: lattice.steps((max - min).max_element().max(0.0)) * DUST,
         }
     }
@@ -144,7 +172,7 @@ impl Model {
         for link in &links {
             let kind = kind(mesh, link, &faces, crease);
             if let Some(kind) = kind {
-                self.edges.push(Edge { a: base + link.a, b: base + link.b, kind, id });
+                self.edges.push(Edge { a: base + link.a, b: base + link.b, kind, id, curve: NONE });
             }
             self.add_outlines(link, base, &faces);
         }
@@ -189,7 +217,24 @@ impl Model {
         let (min, max) = around(corners.map(|s| self.at[s[1] as usize]));
         let on = self.space[self.sides[first][0] as usize];
         let plane = Plane { normal, offset: normal.dot(on) };
-        self.facets.push(Facet { plane, sides: [first as u32, self.sides.len() as u32], min, max });
+        let sides = [first as u32, self.sides.len() as u32];
+        self.facets.push(Facet { plane, sides, min, max, field: NONE });
+    }
+
+    /// Adds a point.
+    pub fn add_point(&mut self, p: DVec3) -> u32 {
+        let (image, gain) = self.camera.image(p);
+        self.at.push(self.lattice.place(image));
+        self.gain.push(gain);
+        self.space.push(p);
+        self.at.len() as u32 - 1
+    }
+
+    /// Moves a point.
+    pub fn move_point(&mut self, point: u32, p: DVec3) {
+        let (image, gain) = self.camera.image(p);
+        let i = point as usize;
+        (self.at[i], self.gain[i], self.space[i]) = (self.lattice.place(image), gain, p);
     }
 
     /// An edge is an outline of the facets beside it, unless they go on into each other.
@@ -204,9 +249,31 @@ impl Model {
         for (face, facet, a, b) in [(link.left, left, a, b), (link.right, right, b, a)] {
             if facet != NONE {
                 let (a, b) = if area(face) > 0.0 { (a, b) } else { (b, a) };
-                self.outlines.push(Outline { a, b, facet });
+                self.outlines.push(Outline { a, b, facet, curve: NONE });
             }
         }
+    }
+
+    /// The larger side of the picture, mm.
+    pub fn picture_size(&self) -> f64 {
+        self.dust / DUST / self.lattice.steps(1.0)
+    }
+
+    /// Whether an edge may run through faces, so that outlines do not tell where it is hidden.
+    pub fn pierces(&self, edge: &Edge) -> bool {
+        !matches!(edge.kind, Kind::Sharp | Kind::Border | Kind::Contour)
+    }
+
+    /// The place in space, 0 to 1 along a straight edge, of the point at t in the picture.
+    pub fn place_in_space(&self, [a, b]: [u32; 2], t: f64) -> f64 {
+        let [k, l] = [self.gain[a as usize] * (1.0 - t), self.gain[b as usize] * t];
+        l / (k + l)
+    }
+
+    /// The point of a straight edge at t in the picture.
+    pub fn point_on(&self, edge: &Edge, t: f64) -> DVec3 {
+        let s = self.place_in_space([edge.a, edge.b], t);
+        self.space[edge.a as usize].lerp(self.space[edge.b as usize], s)
     }
 
     /// Height of an edge's ends over a plane, each times its magnification, so that it is linear along the
