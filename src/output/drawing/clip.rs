@@ -84,19 +84,34 @@ impl<'a> Clipper<'a> {
         line: &Scanline,
         t: f64,
         on: Option<DVec3>,
-        cuts: &mut Vec<f64>,
-    ) -> u32 {
+    ) -> i32 {
         let at = line.at(t);
         let mut order = 0;
         self.cells.at(at, |i| {
             let facet = &self.model.facets[i as usize];
             let apart = (facet.min - 1.0).cmpgt(at) | (at - 1.0).cmpgt(facet.max);
-            if !apart.any() && self.hides(facet, edge, t, on) {
-                crossings(self.model, line, facet, cuts);
-                order += cuts.iter().filter(|&&c| c < t).count() as u32 & 1;
+            if !apart.any() {
+                let winding = self.winding(facet, line, t);
+                if winding != 0 && self.hides(facet, edge, t, on) {
+                    order += winding;
+                }
             }
         });
         order
+    }
+
+    /// How often a facet lies over the point of a line at t: once or not at all, unless it folds over itself; less than
+    /// not at all where its neighbours lie over each other instead.
+    fn winding(&self, facet: &Facet, line: &Scanline, t: f64) -> i32 {
+        let mut winding: i32 = 0;
+        for &[a, b] in &self.model.sides[facet.sides[0] as usize..facet.sides[1] as usize] {
+            let [a, b] = [a, b].map(|i| line.sighted(self.model.at[i as usize]));
+            if line.crossing(a, b).is_some_and(|c| c < t) {
+                winding += if a.side > 0.0 { 1 } else { -1 };
+            }
+        }
+        // An open surface seen from behind runs the other way around.
+        if facet.field == NONE { winding.abs() } else { winding }
     }
 
     /// Whether the surface of a facet is in front of an edge at t.
@@ -110,9 +125,11 @@ impl<'a> Clipper<'a> {
             return facet.plane.distance(p) < -self.model.contact;
         };
         let sight = self.model.camera.sight(p).normalize_or_zero();
-        let own = self.model.curves.get(edge.curve as usize).is_some_and(|c| c.lies_on(field));
-        let contact = if own { field.radius() * OWN } else { self.model.bound };
-        ahead(field, &facet.plane, p, sight) > contact
+        let curve = self.model.curves.get(edge.curve as usize);
+        let radius = field.local(p).radius();
+        let own = curve.is_some_and(|c| c.is_contour_of(field));
+        let contact = if own { radius * OWN } else { self.model.bound };
+        ahead(field, &facet.plane, p, sight, radius / 2.0) > contact
     }
 }
 
@@ -121,12 +138,12 @@ impl<'a> Clipper<'a> {
 const OWN: f64 = 1.0 / 256.0;
 
 /// Newton's steps along a sight line, at most.
-const STEPS: usize = 24;
+const STEPS: usize = 64;
 
-/// How far along a sight line from `p` it meets the part of a surface that a plane stands for, mm.
-fn ahead(field: &Field, plane: &Plane, p: DVec3, sight: DVec3) -> f64 {
+/// How far along a sight line from `p` it meets the part of a surface that a plane stands for, mm;
+/// steps are `reach` mm at most.
+fn ahead(field: &Field, plane: &Plane, p: DVec3, sight: DVec3, reach: f64) -> f64 {
     let slope = plane.normal.dot(sight);
-    let reach = field.radius() / 2.0;
     let guess = -plane.distance(p) / slope;
     let mut s = if slope.abs() > 0.01 && guess.is_finite() { guess } else { 0.0 };
     for _ in 0..STEPS {

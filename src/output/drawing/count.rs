@@ -34,7 +34,6 @@ pub struct Counter<'a> {
 pub struct Tally {
     sieve: Sieve,
     steps: Vec<Step>,
-    cuts: Vec<f64>,
 }
 
 impl<'a> Counter<'a> {
@@ -49,14 +48,14 @@ impl<'a> Counter<'a> {
 
     /// Storage for [`Counter::hide`].
     pub fn tally(&self) -> Tally {
-        Tally { sieve: Sieve::new(self.model.outlines.len()), steps: vec![], cuts: vec![] }
+        Tally { sieve: Sieve::new(self.model.outlines.len()), steps: vec![] }
     }
 
     /// Appends the spans of a straight edge that pierces no face.
     pub fn hide(&self, edge: &Edge, tally: &mut Tally, out: &mut Vec<Span>) {
         let [p, q] = [edge.a, edge.b].map(|i| self.model.at[i as usize]);
         let line = Scanline::new(p, q);
-        let Tally { sieve, steps, cuts } = tally;
+        let Tally { sieve, steps } = tally;
         steps.clear();
         sieve.next_round();
         self.cells.along(p, q, |i| {
@@ -66,7 +65,7 @@ impl<'a> Counter<'a> {
         });
         steps.sort_unstable_by(|a, b| a.at.total_cmp(&b.at));
         let (seed, before) = widest(steps);
-        let order = self.clipper.order_at(edge, &line, seed, None, cuts) as i32;
+        let order = self.clipper.order_at(edge, &line, seed, None);
         spans(steps, order - before, self.model.dust / line.length(), out);
     }
 
@@ -118,7 +117,7 @@ impl<'a> Counter<'a> {
 
     /// The spans of a chain of chords, by chord and place on it, and the true points where they meet.
     pub fn hide_chain(&self, chain: &[Chord], tally: &mut Tally) -> Vec<Stretch> {
-        let Tally { sieve, cuts, .. } = tally;
+        let Tally { sieve, .. } = tally;
         let mut turns: Vec<Turn> = vec![];
         for (number, chord) in chain.iter().enumerate() {
             let edge = &self.model.edges[chord.edge as usize];
@@ -140,15 +139,15 @@ impl<'a> Counter<'a> {
             });
         }
         turns.sort_unstable_by(|a, b| a.at.total_cmp(&b.at));
-        self.stretches(chain, &turns, cuts)
+        self.stretches(chain, &turns)
     }
 
     /// Counts along a chain from the middle of its widest gap.
-    fn stretches(&self, chain: &[Chord], turns: &[Turn], cuts: &mut Vec<f64>) -> Vec<Stretch> {
+    fn stretches(&self, chain: &[Chord], turns: &[Turn]) -> Vec<Stretch> {
         let end = chain.len() as f64;
         let steps: Vec<Step> = turns.iter().map(|t| Step { at: t.at / end, by: t.by }).collect();
         let (seed, before) = widest(&steps);
-        let mut order = self.order_on(chain, seed * end, cuts) as i32 - before;
+        let mut order = self.order_on(chain, seed * end) - before;
         let mut out: Vec<Stretch> = vec![];
         let mut from = (0.0, self.model.space[chain[0].ends[0] as usize]);
         let last = (end, self.model.space[chain[chain.len() - 1].ends[1] as usize]);
@@ -169,7 +168,7 @@ impl<'a> Counter<'a> {
     }
 
     /// The order of a chain at a place, from a sight line.
-    fn order_on(&self, chain: &[Chord], at: f64, cuts: &mut Vec<f64>) -> u32 {
+    fn order_on(&self, chain: &[Chord], at: f64) -> i32 {
         let number = (at as usize).min(chain.len() - 1);
         let chord = chain[number];
         let edge = &self.model.edges[chord.edge as usize];
@@ -180,7 +179,7 @@ impl<'a> Counter<'a> {
         let strand = Strand::new(self.model, edge.curve, chord.ends);
         let t = (at - number as f64).clamp(0.0, 1.0);
         let on = strand.at(&self.model.camera, self.model.place_in_space(chord.ends, t));
-        self.clipper.order_at(edge, &Scanline::new(p, q), t, Some(on), cuts)
+        self.clipper.order_at(edge, &Scanline::new(p, q), t, Some(on))
     }
 }
 

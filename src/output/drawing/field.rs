@@ -35,6 +35,12 @@ impl Local {
         self.bends.iter().map(|(d, k)| *d * (d.dot(v) * k)).sum()
     }
 
+    /// The smallest radius of curvature, mm; infinite for a plane.
+    pub fn radius(&self) -> f64 {
+        let most = self.bends[0].1.abs().max(self.bends[1].1.abs());
+        if most > 0.0 { 1.0 / most } else { f64::INFINITY }
+    }
+
     /// How much the surface bends along a direction, times the square of its length.
     pub fn bend_along(&self, v: DVec3) -> f64 {
         v.dot(self.bend(v))
@@ -61,18 +67,6 @@ impl Field {
         match *self {
             Field::Flat(plane) => Local::flat(plane.distance(p), plane.normal),
             Field::Round(surface) => local(&surface, p),
-        }
-    }
-
-    /// A length typical for it, mm: the smallest radius. Infinite for a plane.
-    pub fn radius(&self) -> f64 {
-        match *self {
-            Field::Round(
-                Surface::Cylinder { radius, .. }
-                | Surface::Sphere { radius, .. }
-                | Surface::Torus { minor: radius, .. },
-            ) => radius,
-            _ => f64::INFINITY,
         }
     }
 }
@@ -196,9 +190,9 @@ impl Curve {
         newton(start, reach, |p| [one, other, third].map(|c| c.value(camera, p)))
     }
 
-    /// Whether it lies on a surface.
-    pub fn lies_on(&self, surface: &Field) -> bool {
-        self.0.iter().any(|c| matches!(c, Constraint::On(f) if f == surface))
+    /// Whether it is a contour of a surface.
+    pub fn is_contour_of(&self, surface: &Field) -> bool {
+        self.0.contains(&Constraint::Contour(*surface))
     }
 
     /// The direction of the curve at one of its points, not a unit vector.

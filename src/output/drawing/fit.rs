@@ -38,6 +38,8 @@ pub struct Fitted<'a> {
     chain: &'a [Chord],
     /// The corners of the chain, one more than chords.
     nodes: Vec<Node>,
+    /// Whether all of it is on one line.
+    straight: bool,
     ellipse: Option<Ellipse>,
     tolerance: f64,
 }
@@ -45,13 +47,14 @@ pub struct Fitted<'a> {
 impl<'a> Fitted<'a> {
     /// A chain whose shapes are within `tolerance` mm.
     pub fn new(model: &'a Model, chain: &'a [Chord], tolerance: f64) -> Fitted<'a> {
-        let mut fitted = Fitted { model, chain, nodes: vec![], ellipse: None, tolerance };
+        let mut fitted = Fitted { model, chain, nodes: vec![], straight: false, ellipse: None, tolerance };
         fitted.nodes = (0..=chain.len()).map(|i| fitted.corner(i)).collect();
         let mut points: Vec<DVec2> = fitted.nodes.iter().map(|n| n.at).collect();
         if points.len() < 12 {
             points = (0..=12).map(|i| fitted.point(chain.len() as f64 * f64::from(i) / 12.0)).collect();
         }
-        if !is_straight(&points, tolerance) {
+        fitted.straight = is_straight(&points, tolerance);
+        if !fitted.straight {
             fitted.ellipse = Ellipse::through(&points, tolerance);
         }
         fitted
@@ -84,18 +87,44 @@ impl<'a> Fitted<'a> {
         Node { at, tangent }
     }
 
-    /// The shape of a part of the chain.
-    pub fn shape(&self, stretch: &Stretch) -> Shape {
+    /// Calls with the shapes of a part of the chain.
+    pub fn shapes(&self, stretch: &Stretch, mut found: impl FnMut(Shape)) {
         let nodes = self.part(stretch);
         let points: Vec<DVec2> = nodes.iter().map(|n| n.at).collect();
-        if is_straight(&points, self.tolerance) {
+        if self.straight {
             let (low, high) = extremes(&points);
-            return Shape::Straight(low, high);
+            return found(Shape::Straight(low, high));
         }
-        match &self.ellipse {
-            Some(ellipse) => self.arc(ellipse, stretch, &points),
-            None => Shape::Curve(cubics(&nodes, self.tolerance)),
+        if let Some(ellipse) = &self.ellipse {
+            return found(self.arc(ellipse, stretch, &points));
         }
+        let mut from = 0;
+        while from + 1 < nodes.len() {
+            let (to, straight) = self.run(&points, from);
+            found(if straight {
+                Shape::Straight(points[from], points[to])
+            } else {
+                Shape::Curve(cubics(&nodes[from..=to], self.tolerance * LOOSE))
+            });
+            from = to;
+        }
+    }
+
+    /// How far the curve goes on from a node without changing between straight and bent.
+    fn run(&self, points: &[DVec2], from: usize) -> (usize, bool) {
+        let bent = |i: usize| {
+            i + 2 < points.len() && !is_straight(&points[i..i + 3], self.tolerance)
+        };
+        let last = points.len() - 1;
+        if from + 2 > last || bent(from) {
+            let to = (from + 1..last).find(|&i| i + 3 < last && !bent(i) && !bent(i + 1));
+            return (to.unwrap_or(last), false);
+        }
+        let mut to = from + 2;
+        while to < last && is_straight(&points[from..=to + 1], self.tolerance) {
+            to += 1;
+        }
+        (to, true)
     }
 
     /// The nodes of a part of the chain.
@@ -215,6 +244,10 @@ fn fits(nodes: &[Node], tolerance: f64) -> bool {
         (0.0..=1.0).contains(&t) && segment.at(first.at, t).distance(node.at) <= tolerance
     })
 }
+
+/// Cubic curves may be so much farther from the true curve than coincident lines from each other: they only
+/// have to look right and be as long, and each digit costs half as many pieces again.
+const LOOSE: f64 = 100.0;
 
 /// Half the digits of a parameter: differences over it are derivatives to the other half.
 const STEP: f64 = 1e-7;

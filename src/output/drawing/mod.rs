@@ -98,7 +98,8 @@ fn hide(model: &Model, method: Method, sheet: &mut Sheet) {
         let edge = &model.edges[chain[0].edge as usize];
         let fitted = Fitted::new(model, &chain, tolerance);
         for stretch in counter.hide_chain(&chain, &mut tally) {
-            sheet.add_shape(fitted.shape(&stretch), mark(edge, stretch.order));
+            let mark = mark(edge, stretch.order);
+            fitted.shapes(&stretch, |shape| sheet.add_shape(shape, mark));
         }
     }
 }
