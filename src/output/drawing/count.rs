@@ -110,7 +110,7 @@ impl<'a> Counter<'a> {
         let other = Strand::new(model, outline.curve, [outline.a, outline.b]);
         let s = model.place_in_space(ends, at);
         let t = model.place_in_space([outline.a, outline.b], a.side / (a.side - b.side));
-        let points = meet(&model.camera, &one, s, &other, t);
+        let points = meet(&model.camera, &one, s, &other, t)?;
         let front = nearer(&model.camera, points) > model.bound * TOUCH;
         front.then(|| (points[0], one.place(points[0])))
     }
@@ -142,29 +142,52 @@ impl<'a> Counter<'a> {
         self.stretches(chain, &turns)
     }
 
-    /// Counts along a chain from the middle of its widest gap.
+    /// Counts along a chain. The count is kept right by a sight line in each long stretch: chords cross where curves
+    /// that touch do not, and a turn missed or met twice must not spoil the rest of the chain.
     fn stretches(&self, chain: &[Chord], turns: &[Turn]) -> Vec<Stretch> {
         let end = chain.len() as f64;
-        let steps: Vec<Step> = turns.iter().map(|t| Step { at: t.at / end, by: t.by }).collect();
-        let (seed, before) = widest(&steps);
-        let mut order = self.order_on(chain, seed * end) - before;
-        let mut out: Vec<Stretch> = vec![];
+        let last = self.model.space[chain[chain.len() - 1].ends[1] as usize];
+        let marks = turns.iter().map(|t| (t.at, t.point, t.by)).chain([(end, last, 0)]);
         let mut from = (0.0, self.model.space[chain[0].ends[0] as usize]);
-        let last = (end, self.model.space[chain[chain.len() - 1].ends[1] as usize]);
-        let marks = turns.iter().map(|t| (t.at, t.point, t.by)).chain([(last.0, last.1, 0)]);
+        let (mut parts, mut change): (Vec<(Stretch, i32)>, i32) = (vec![], 0);
         for (at, point, by) in marks {
             let to = (at, point);
-            if to.1.distance(from.1) > self.model.contact || at - from.0 > 1.0 {
-                let seen = order.max(0) as u32;
-                match out.last_mut() {
-                    Some(s) if s.order == seen => s.to = to,
-                    _ => out.push(Stretch { from, to, order: seen }),
-                }
+            if point.distance(from.1) > self.model.contact || at - from.0 > 1.0 {
+                parts.push((Stretch { from, to, order: 0 }, std::mem::take(&mut change)));
                 from = to;
             }
-            order += by;
+            change += by;
+        }
+        self.count(chain, &mut parts);
+        let mut out: Vec<Stretch> = vec![];
+        for (part, _) in parts {
+            match out.last_mut() {
+                Some(last) if last.order == part.order => last.to = part.to,
+                _ => out.push(part),
+            }
         }
         out
+    }
+
+    /// Gives the parts of a chain, each with the change before it, their order.
+    fn count(&self, chain: &[Chord], parts: &mut [(Stretch, i32)]) {
+        let width = |s: &Stretch| s.to.0 - s.from.0;
+        let Some(widest) = parts.iter().map(|p| width(&p.0)).reduce(f64::max) else { return };
+        let seen: Vec<Option<i32>> = parts
+            .iter()
+            .map(|(s, _)| {
+                let long = width(s) >= widest.min(SOUND);
+                long.then(|| self.order_on(chain, (s.from.0 + s.to.0) / 2.0))
+            })
+            .collect();
+        let first = seen.iter().position(Option::is_some).unwrap_or(0);
+        let before: i32 = parts[1..=first].iter().map(|p| p.1).sum();
+        let mut order = seen[first].unwrap_or(0) - before;
+        for (i, (part, change)) in parts.iter_mut().enumerate() {
+            order += if i > 0 { *change } else { 0 };
+            order = seen[i].unwrap_or(order);
+            part.order = order.max(0) as u32;
+        }
     }
 
     /// The order of a chain at a place, from a sight line.
@@ -182,6 +205,9 @@ impl<'a> Counter<'a> {
         self.clipper.order_at(edge, &Scanline::new(p, q), t, Some(on))
     }
 }
+
+/// Stretches of so many chords are far enough from their ends for a sight line.
+const SOUND: f64 = 1.5;
 
 /// Where the order of a chain changes.
 struct Turn {

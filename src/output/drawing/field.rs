@@ -195,6 +195,12 @@ impl Curve {
         self.0.contains(&Constraint::Contour(*surface))
     }
 
+    /// Whether two curves lie on a common round surface.
+    pub fn shares_surface(&self, other: &Curve) -> bool {
+        let round = |c: &&Constraint| matches!(c, Constraint::On(Field::Round(_)));
+        self.0.iter().filter(round).any(|c| other.0.contains(c))
+    }
+
     /// The direction of the curve at one of its points, not a unit vector.
     pub fn tangent(&self, camera: &Camera, p: DVec3) -> DVec3 {
         let [(_, df), (_, dg)] = self.0.map(|c| c.value(camera, p));

@@ -5,7 +5,10 @@ use glam::{DVec2, DVec3};
 use super::{Camera, field::Curve, model::Model};
 
 /// Newton's method doubles the digits in each step; a chord gives three to begin with.
-const STEPS: usize = 8;
+const STEPS: usize = 12;
+
+/// Steps shorter than this part of the coordinates are the last: the next would be its square.
+const SETTLED: f64 = 1e-9;
 
 /// Pictures that cross at a smaller angle than this (its sine) are left at the crossing of their chords.
 const GRAZING: f64 = 1e-6;
@@ -55,27 +58,42 @@ impl<'a> Strand<'a> {
 }
 
 /// The points of two strands whose images fall together, from places on their chords where the chords'
-/// images cross.
-pub fn meet(camera: &Camera, one: &Strand, s: f64, other: &Strand, t: f64) -> [DVec3; 2] {
+/// images cross. Where Newton's method finds none, strands of one surface do not cross, since chords of a
+/// contour and of a curve beside it may cross where the curves do not; others cross where their chords do.
+pub fn meet(
+    camera: &Camera,
+    one: &Strand,
+    s: f64,
+    other: &Strand,
+    t: f64,
+) -> Option<[DVec3; 2]> {
     let start = [one.at(camera, s), other.at(camera, t)];
+    let beside = match (one.curve, other.curve) {
+        (Some(a), Some(b)) => a.shares_surface(b),
+        _ => false,
+    };
+    refined(camera, [one, other], start).or((!beside).then_some(start))
+}
+
+/// The points near two others where the images of two strands cross.
+fn refined(camera: &Camera, strands: [&Strand; 2], start: [DVec3; 2]) -> Option<[DVec3; 2]> {
     let mut points = start;
     for _ in 0..STEPS {
-        let tangents = [one.tangent(camera, points[0]), other.tangent(camera, points[1])];
-        let Some(moves) = steps(camera, points, tangents) else { break };
-        let strands = [one, other];
+        let tangents = [0, 1].map(|i| strands[i].tangent(camera, points[i]));
+        let moves = steps(camera, points, tangents)?;
         let within = (0..2).all(|i| moves[i].abs() <= strands[i].chord().length());
         if !within {
-            return start;
+            return None;
         }
         points = [0, 1].map(|i| {
             strands[i].pulled(camera, points[i] + tangents[i] * moves[i], tangents[i])
         });
         let size = points[0].abs().max_element().max(points[1].abs().max_element());
-        if moves[0].abs().max(moves[1].abs()) <= 16.0 * f64::EPSILON * size {
-            break;
+        if moves[0].abs().max(moves[1].abs()) <= SETTLED * size {
+            return Some(points);
         }
     }
-    points
+    None
 }
 
 /// How far to go along each tangent to where their images cross.
