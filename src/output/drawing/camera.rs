@@ -7,7 +7,7 @@ use crate::geom::trig::tan_deg;
 
 /// The part of the eye's distance from the target within which nothing is drawn: a picture has to end
 /// before the eye, where points have no image.
-const NEAREST: f64 = 1e-3;
+const NEAREST: f64 = 1e-2;
 
 /// Directions are parallel to the z axis when the part of them across it is this small: below that the
 /// picture's x axis would be rounding noise.
@@ -174,6 +174,11 @@ impl Camera {
     /// Unit vector towards the eye: everywhere in a parallel projection, at the target in a perspective.
     pub fn toward(&self) -> DVec3 {
         self.toward
+    }
+
+    /// The point whose image is the picture's origin.
+    pub fn target(&self) -> DVec3 {
+        self.target
     }
 
     /// The vector from a point towards the eye, not a unit vector in a perspective.

@@ -116,18 +116,36 @@ impl Segment {
         }
     }
 
+    /// The part between two parameters in 0..1, and where it begins.
+    pub fn part(&self, start: DVec2, from: f64, to: f64) -> (DVec2, Segment) {
+        let [first, last] = [from, to].map(|t| self.at(start, t));
+        let part = match *self {
+            Segment::Line { .. } => Segment::Line { to: last },
+            Segment::Arc { center, major, minor, from: a, to: b } => {
+                let [a, b] = [from, to].map(|t| a + (b - a) * t);
+                Segment::Arc { center, major, minor, from: a, to: b }
+            }
+            Segment::Cubic { .. } => {
+                let reach = (to - from) / 3.0;
+                let [u, v] = [from, to].map(|t| self.velocity(start, t));
+                Segment::Cubic { first: first + u * reach, second: last - v * reach, to: last }
+            }
+        };
+        (first, part)
+    }
+
     /// The derivative of [`Segment::at`].
-    fn speed(&self, start: DVec2, t: f64) -> f64 {
+    fn velocity(&self, start: DVec2, t: f64) -> DVec2 {
         match *self {
-            Segment::Line { to } => start.distance(to),
+            Segment::Line { to } => to - start,
             Segment::Arc { major, minor, from, to, .. } => {
                 let (sin, cos) = libm::sincos(from + (to - from) * t);
-                (minor * cos - major * sin).length() * (to - from).abs()
+                (minor * cos - major * sin) * (to - from)
             }
             Segment::Cubic { first, second, to } => {
                 let s = 1.0 - t;
                 let [a, b, c] = [first - start, second - first, to - second];
-                (a * (s * s) + b * (2.0 * s * t) + c * (t * t)).length() * 3.0
+                (a * (s * s) + b * (2.0 * s * t) + c * (t * t)) * 3.0
             }
         }
     }
@@ -150,7 +168,7 @@ impl Segment {
         let width = 1.0 / f64::from(parts);
         let middle = (f64::from(part) + 0.5) * width;
         let points = GAUSS.iter().flat_map(|&(x, w)| [(x, w), (-x, w)]);
-        points.map(|(x, w)| w * self.speed(start, middle + x * width / 2.0)).sum::<f64>() * width
+        points.map(|(x, w)| w * self.velocity(start, middle + x * width / 2.0).length()).sum::<f64>() * width
             / 2.0
     }
 }

@@ -23,11 +23,13 @@ mod cells;
 mod chain;
 mod clip;
 mod conic;
+mod convex;
 mod count;
 #[allow(clippy::module_inception, reason = "the noun is the file's")]
 mod drawing;
 mod field;
 mod fit;
+mod frustum;
 mod lattice;
 mod links;
 mod meet;
@@ -43,6 +45,7 @@ pub use scene::{Body, Hidden, Kind, Method, Options, Scene, Stroke};
 
 use arcs::ArcPiece;
 use clip::Clipper;
+use convex::Bodies;
 use count::Counter;
 use fit::{Fitted, Shape};
 use links::NONE;
@@ -62,6 +65,9 @@ pub fn visible_lines(scene: &Scene, camera: &Camera, options: &Options) -> Drawi
     let model = Model::new(scene, camera, options);
     let mut sheet = Sheet::default();
     hide(&model, options.method, &mut sheet);
+    if let Some(window) = camera.window() {
+        sheet.cut(&window);
+    }
     sheet.assemble(model.picture_size() * COINCIDENT, options.hidden)
 }
 
@@ -75,25 +81,46 @@ struct Sheet {
 
 /// Puts all edges on the sheet.
 fn hide(model: &Model, method: Method, sheet: &mut Sheet) {
-    let clipper = Clipper::new(model);
-    let mut desk = clipper.desk();
-    let counter = Counter::new(model, &clipper);
-    let mut tally = counter.tally();
-    let mut spans = vec![];
-    let clip = method == Method::Clip;
-    for edge in &model.edges {
-        if edge.curve != NONE || model.at[edge.a as usize] == model.at[edge.b as usize] {
-            continue;
-        }
-        spans.clear();
-        if clip || model.pierces(edge) {
-            clipper.hide(edge, &mut desk, &mut spans);
-        } else {
-            counter.hide(edge, &mut tally, &mut spans);
-        }
-        sheet.add_spans(model, edge, &spans);
+    let bodies_only = model.hulls.last().is_some_and(|h| h.edges.end == model.edges.len());
+    if method == Method::Auto && bodies_only && model.hulls.iter().all(|h| h.convex) {
+        return hide_convex(model, sheet);
     }
+    let clipper = Clipper::new(model);
+    if method == Method::Clip {
+        let mut desk = clipper.desk();
+        return sheet.add_edges(model, 0..model.edges.len(), |edge, out| clipper.hide(edge, &mut desk, out));
+    }
+    let (mut desk, counter) = (clipper.desk(), Counter::new(model, &clipper));
+    let mut tally = counter.tally();
+    for hull in &model.hulls {
+        sheet.add_edges(model, hull.edges.clone(), |edge, out| {
+            if hull.reached {
+                clipper.hide(edge, &mut desk, out);
+            } else {
+                counter.hide(edge, &mut tally, out);
+            }
+        });
+    }
+    let strokes = model.hulls.last().map_or(0, |h| h.edges.end)..model.edges.len();
+    sheet.add_edges(model, strokes, |edge, out| clipper.hide(edge, &mut desk, out));
+    hide_chains(model, &counter, sheet);
+}
+
+/// Puts the edges of convex bodies on the sheet.
+fn hide_convex(model: &Model, sheet: &mut Sheet) {
+    let bodies = Bodies::new(model);
+    let mut steps = vec![];
+    for (number, hull) in model.hulls.iter().enumerate() {
+        sheet.add_edges(model, hull.edges.clone(), |edge, out| {
+            bodies.hide(number, edge, &mut steps, out);
+        });
+    }
+}
+
+/// Puts curved edges on the sheet.
+fn hide_chains(model: &Model, counter: &Counter, sheet: &mut Sheet) {
     let tolerance = model.picture_size() * COINCIDENT;
+    let mut tally = counter.tally();
     for chain in chain::chains(model) {
         let edge = &model.edges[chain[0].edge as usize];
         let fitted = Fitted::new(model, &chain, tolerance);
@@ -116,6 +143,23 @@ fn mark(edge: &Edge, order: u32) -> Mark {
 }
 
 impl Sheet {
+    /// Adds the straight edges of a range, hidden by `hide`.
+    fn add_edges(
+        &mut self,
+        model: &Model,
+        range: std::ops::Range<usize>,
+        mut hide: impl FnMut(&Edge, &mut Vec<Span>),
+    ) {
+        let mut spans = vec![];
+        for edge in &model.edges[range] {
+            if edge.curve == NONE && model.at[edge.a as usize] != model.at[edge.b as usize] {
+                spans.clear();
+                hide(edge, &mut spans);
+                self.add_spans(model, edge, &spans);
+            }
+        }
+    }
+
     /// Adds the parts of a straight edge.
     fn add_spans(&mut self, model: &Model, edge: &Edge, spans: &[Span]) {
         let [p, q] = [edge.a, edge.b].map(|i| model.at[i as usize]);
@@ -131,6 +175,29 @@ impl Sheet {
             Shape::Straight(from, to) => self.straight.push(Piece { from, to, mark }),
             Shape::Arc(ellipse, from, to) => self.arcs.push(ArcPiece { ellipse, from, to, mark }),
             Shape::Curve(path) => self.curves.push((path, mark)),
+        }
+    }
+
+    /// Cuts all lines off at the border of a window.
+    fn cut(&mut self, window: &Window) {
+        self.straight.retain_mut(|p| {
+            let Some((from, to)) = window.of_segment(p.from, p.to) else { return false };
+            (p.from, p.to) = (p.from.lerp(p.to, from), p.from.lerp(p.to, to));
+            true
+        });
+        for arc in std::mem::take(&mut self.arcs) {
+            let at = |t: f64| arc.from + (arc.to - arc.from) * t;
+            let parts = window.of_curve(|t| arc.ellipse.at(at(t)));
+            let part = |(from, to)| ArcPiece { from: at(from), to: at(to), ..arc };
+            self.arcs.extend(parts.into_iter().map(part));
+        }
+        for (path, mark) in std::mem::take(&mut self.curves) {
+            for (start, segment) in path.pieces() {
+                for (from, to) in window.of_curve(|t| segment.at(start, t)) {
+                    let (start, segment) = segment.part(start, from, to);
+                    self.curves.push((Path::of(start, segment), mark));
+                }
+            }
         }
     }
 

@@ -1,17 +1,20 @@
 //! The scene as the eye has it: faces that hide, edges that may be drawn.
 
+use std::ops::Range;
+
 use glam::{DVec2, DVec3};
 
 use super::{
     Camera,
     cells::around,
     field::{Curve, Field},
+    frustum::{Visible, before_eye},
     lattice::{Lattice, Plane},
     links::{self, Link, NONE, links},
-    scene::{Kind, Options, Scene},
+    scene::{Kind, Options, Scene, Stroke},
     smooth,
 };
-use crate::geom::{PolyMesh, Surface};
+use crate::geom::{Bounds, PolyMesh, Surface, bvh::Bvh};
 
 /// A point nearer than this part of the scene's size to a face's plane lies in it: set operations round
 /// points to 2^-29 of the size, and a plane through rounded points misses others by a few times that.
@@ -22,6 +25,9 @@ const DUST: f64 = 1.0 / (1u64 << 38) as f64;
 
 /// Chords are this part of the modeller's tolerance off their curve at most.
 const CHORD: f64 = 0.25;
+
+/// Bodies of more faces are not treated as convex: asking grows with the square, and so does each comparison.
+const MOST_CONVEX: usize = 32;
 
 /// Faces whose unit normals differ by less than this meet smoothly: rounded corners turn a plane of a few
 /// percent of the scene's size by 1e-7.
@@ -55,6 +61,29 @@ pub struct Edge {
     pub id: u32,
     /// The curve it is a chord of: a place in [`Model::curves`], or [`NONE`].
     pub curve: u32,
+    /// Whether no face beside it is in front.
+    pub back: bool,
+}
+
+/// A body as ranges of the model's lists.
+#[derive(Clone, Debug)]
+pub struct Hull {
+    /// Its points.
+    pub points: Range<usize>,
+    /// Its facets.
+    pub facets: Range<usize>,
+    /// Its outlines.
+    pub outlines: Range<usize>,
+    /// Its edges.
+    pub edges: Range<usize>,
+    /// Corners of its picture's box on the lattice.
+    pub min: DVec2,
+    /// See `min`.
+    pub max: DVec2,
+    /// Whether it is a convex polyhedron.
+    pub convex: bool,
+    /// Whether its box reaches into that of another body.
+    pub reached: bool,
 }
 
 /// A side of a facet across which hiding begins or ends: not shared with another facet.
@@ -87,6 +116,8 @@ pub struct Model {
     pub outlines: Vec<Outline>,
     /// Lines to draw.
     pub edges: Vec<Edge>,
+    /// The bodies.
+    pub hulls: Vec<Hull>,
     /// True surfaces of facets.
     pub fields: Vec<Field>,
     /// True curves of edges and outlines.
@@ -116,20 +147,24 @@ struct Faces {
 }
 
 impl Model {
-    /// The model of a scene all of which is in front of the eye.
+    /// The model of what is before the eye.
     pub fn new(scene: &Scene, camera: &Camera, options: &Options) -> Model {
-        let mut model = Model::placed(scene, camera, options);
+        let (bodies, strokes) = before_eye(scene, camera);
+        let mut model = Model::placed(&bodies, &strokes, camera, options);
         let mut base = 0;
-        for body in &scene.bodies {
-            if !smooth::add_body(&mut model, body, base, options) {
-                model.add_body(body.mesh, base, body.id, options);
-            }
-            base += body.mesh.points.len() as u32;
+        for body in &bodies {
+            let starts = [model.facets.len(), model.outlines.len(), model.edges.len()];
+            let smooth = smooth::add_body(&mut model, body, base, options);
+            let convex = !smooth && model.add_body(body, base, options);
+            let end = base + body.mesh.points.len() as u32;
+            model.add_hull(base as usize..end as usize, starts, convex);
+            base = end;
         }
-        for stroke in &scene.strokes {
+        model.mark_reached();
+        for stroke in &strokes {
             let corners = base..base + stroke.points.len() as u32;
             for (a, b) in corners.clone().zip(corners.skip(1)) {
-                model.edges.push(Edge { a, b, kind: stroke.kind, id: stroke.id, curve: NONE });
+                model.edges.push(Edge { a, b, kind: stroke.kind, id: stroke.id, curve: NONE, back: false });
             }
             base += stroke.points.len() as u32;
         }
@@ -137,10 +172,16 @@ impl Model {
     }
 
     /// All points in space and on the lattice.
-    fn placed(scene: &Scene, camera: &Camera, options: &Options) -> Model {
-        let bodies = scene.bodies.iter().flat_map(|b| &b.mesh.points);
-        let space: Vec<DVec3> =
-            bodies.chain(scene.strokes.iter().flat_map(|s| &s.points)).copied().collect();
+    fn placed(
+        bodies: &[Visible],
+        strokes: &[Stroke],
+        camera: &Camera,
+        options: &Options,
+    ) -> Model {
+        let corners = bodies.iter().flat_map(|b| &b.mesh.points);
+        let ends = strokes.iter().flat_map(|s| &s.points);
+        let before = |p: &DVec3| if camera.ahead(*p) < 0.0 { camera.target() } else { *p };
+        let space: Vec<DVec3> = corners.chain(ends).map(before).collect();
         let images: Vec<(DVec2, f64)> = space.iter().map(|p| camera.image(*p)).collect();
         let (min, max) = around(images.iter().map(|i| i.0));
         let lattice = Lattice::around(min, max);
@@ -153,6 +194,7 @@ impl Model {
             sides: vec![],
             outlines: vec![],
             edges: vec![],
+            hulls: vec![],
             fields: vec![],
             curves: vec![],
             cusps: vec![],
@@ -164,18 +206,64 @@ impl Model {
         }
     }
 
-    fn add_body(&mut self, mesh: &PolyMesh, base: u32, id: u32, options: &Options) {
+    /// Notes what a body brought; `starts` are the lengths of facets, outlines and edges before it.
+    fn add_hull(&mut self, points: Range<usize>, starts: [usize; 3], convex: bool) {
+        let (min, max) = around(self.at[points.clone()].iter().copied());
+        let [facets, outlines, edges] = starts;
+        self.hulls.push(Hull {
+            points,
+            facets: facets..self.facets.len(),
+            outlines: outlines..self.outlines.len(),
+            edges: edges..self.edges.len(),
+            min,
+            max,
+            convex,
+            reached: false,
+        });
+    }
+
+    /// Marks bodies whose boxes reach into each other: their edges may run through faces.
+    fn mark_reached(&mut self) {
+        let boxes: Vec<Bounds> = self
+            .hulls
+            .iter()
+            .map(|h| Bounds::of(self.space[h.points.clone()].iter().copied()).grown(-self.contact))
+            .collect();
+        if boxes.len() > 1 {
+            Bvh::new(&boxes).self_pairs(|a, b| {
+                self.hulls[a as usize].reached = true;
+                self.hulls[b as usize].reached = true;
+            });
+        }
+    }
+
+    /// Adds a body whose facets stand for themselves; whether it is convex.
+    fn add_body(&mut self, body: &Visible, base: u32, options: &Options) -> bool {
+        let (mesh, id) = (&*body.mesh, body.id);
         let links = links(mesh);
-        let open = links.iter().any(|l| l.right == NONE);
+        let open = links.iter().any(|l| l.right == NONE && !body.is_cut(l.a, l.b));
         let faces = self.add_facets(mesh, base, open);
         let crease = crate::geom::trig::cos_deg(options.crease);
         for link in &links {
             let kind = kind(mesh, link, &faces, crease);
-            if let Some(kind) = kind {
-                self.edges.push(Edge { a: base + link.a, b: base + link.b, kind, id, curve: NONE });
+            if let Some(kind) = kind.filter(|_| !body.is_cut(link.a, link.b)) {
+                let (a, b) = (base + link.a, base + link.b);
+                let hides = |f: u32| f != NONE && faces.facet[f as usize] != NONE;
+                let back = !hides(link.left) && !hides(link.right);
+                self.edges.push(Edge { a, b, kind, id, curve: NONE, back });
             }
             self.add_outlines(link, base, &faces);
         }
+        !open && body.cut as usize == mesh.points.len() && self.is_convex(mesh, &faces.normals)
+    }
+
+    /// Whether all points of a mesh are behind the planes of all its faces. Bodies of many faces are not asked.
+    fn is_convex(&self, mesh: &PolyMesh, normals: &[DVec3]) -> bool {
+        mesh.face_count() <= MOST_CONVEX
+            && mesh.faces().zip(normals).all(|(face, normal)| {
+                let offset = normal.dot(mesh.points[face.outer()[0] as usize]);
+                mesh.points.iter().all(|p| normal.dot(*p) - offset <= self.contact)
+            })
     }
 
     /// Makes facets of the faces towards the eye, or of both sides of an open surface.
@@ -256,12 +344,9 @@ impl Model {
 
     /// The larger side of the picture, mm.
     pub fn picture_size(&self) -> f64 {
-        self.dust / DUST / self.lattice.steps(1.0)
-    }
-
-    /// Whether an edge may run through faces, so that outlines do not tell where it is hidden.
-    pub fn pierces(&self, edge: &Edge) -> bool {
-        !matches!(edge.kind, Kind::Sharp | Kind::Border | Kind::Contour)
+        let size = self.dust / DUST / self.lattice.steps(1.0);
+        let window = self.camera.window();
+        window.map_or(size, |w| size.min((w.max - w.min).max_element()))
     }
 
     /// The place in space, 0 to 1 along a straight edge, of the point at t in the picture.

@@ -13,10 +13,11 @@ use glam::DVec3;
 use super::{
     cells::around,
     field::{Constraint, Curve, Field, on_all},
+    frustum::Visible,
     lattice::Plane,
     links::{Link, NONE, each_side, links},
     model::{Edge, Facet, Model, Outline},
-    scene::{Body, Kind, Options},
+    scene::{Kind, Options},
 };
 use crate::geom::{PolyMesh, Surface};
 
@@ -53,6 +54,7 @@ struct Pass {
 
 struct Smooth<'a> {
     model: &'a mut Model,
+    body: &'a Visible<'a>,
     mesh: &'a PolyMesh,
     base: u32,
     id: u32,
@@ -71,8 +73,8 @@ struct Smooth<'a> {
 }
 
 /// Adds a body if it has round faces; false if all its facets stand for themselves.
-pub fn add_body(model: &mut Model, body: &Body, base: u32, options: &Options) -> bool {
-    let mesh = body.mesh;
+pub fn add_body(model: &mut Model, body: &Visible, base: u32, options: &Options) -> bool {
+    let mesh = &*body.mesh;
     let round = faithful_origins(mesh, options.tolerance.mm() * FAITHFUL);
     if !round.contains(&true) {
         return false;
@@ -80,6 +82,7 @@ pub fn add_body(model: &mut Model, body: &Body, base: u32, options: &Options) ->
     let links = links(mesh);
     let mut smooth = Smooth {
         model,
+        body,
         mesh,
         base,
         id: body.id,
@@ -300,7 +303,11 @@ impl Smooth<'_> {
             let (_, l, r) = nodes[nodes.len() - 1];
             nodes.push(if side == 0 { (at, !l, r) } else { (at, l, !r) });
         }
-        let drawn = link.right == NONE || !self.is_tangent(patches, ends);
+        let drawn = if link.right == NONE {
+            !self.body.is_cut(link.a, link.b)
+        } else {
+            !self.is_tangent(patches, ends)
+        };
         for i in 0..nodes.len() {
             let (from, l, r) = nodes[i];
             let to = nodes.get(i + 1).map_or(ends[1], |n| n.0);
@@ -359,8 +366,9 @@ impl Smooth<'_> {
             if right && !left {
                 self.add_outline(link.right, [b, a], curve);
             }
-            if drawn || left != right {
-                self.model.edges.push(Edge { a, b, kind, id: self.id, curve });
+            if drawn || left != right && link.right != NONE {
+                let back = !left && !right;
+                self.model.edges.push(Edge { a, b, kind, id: self.id, curve, back });
             }
         }
     }
@@ -435,7 +443,8 @@ impl Smooth<'_> {
             let [a, b] = [pair[0], pair[1]];
             self.parts.push((face, [a, b]));
             self.add_outline(face, [a, b], curve);
-            self.model.edges.push(Edge { a, b, kind: Kind::Contour, id: self.id, curve });
+            let (kind, id) = (Kind::Contour, self.id);
+            self.model.edges.push(Edge { a, b, kind, id, curve, back: false });
         }
     }
 
