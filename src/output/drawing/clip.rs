@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::{
     cells::{Cells, Extent, Sieve},
+    strips::Strips,
     field::Field,
     lattice::{Plane, Scanline},
     links::NONE,
@@ -18,7 +19,12 @@ use super::{
 pub struct Clipper<'a> {
     model: &'a Model,
     cells: Cells,
+    /// Facets of many sides, by strips.
+    strips: Vec<Option<Strips>>,
 }
+
+/// Facets of more sides than this are kept in strips.
+const MANY: usize = 64;
 
 /// Storage that is kept from edge to edge.
 pub struct Desk {
@@ -31,7 +37,12 @@ impl<'a> Clipper<'a> {
     /// Sorts the facets into a grid.
     pub fn new(model: &'a Model) -> Clipper<'a> {
         let extent = |i: usize| Extent::Box(model.facets[i].min, model.facets[i].max);
-        Clipper { model, cells: Cells::new(model.facets.len(), extent) }
+        let strips = |f: &Facet| {
+            let sides = &model.sides[f.sides[0] as usize..f.sides[1] as usize];
+            (sides.len() > MANY).then(|| Strips::new(model, sides, f.min.y, f.max.y))
+        };
+        let strips = model.facets.iter().map(strips).collect();
+        Clipper { model, cells: Cells::new(model.facets.len(), extent), strips }
     }
 
     /// Storage for [`Clipper::hide`].
@@ -91,8 +102,15 @@ impl<'a> Clipper<'a> {
             let facet = &self.model.facets[i as usize];
             let apart = (facet.min - 1.0).cmpgt(at) | (at - 1.0).cmpgt(facet.max);
             if !apart.any() {
-                let winding = self.winding(facet, line, t);
-                if winding != 0 && self.hides(facet, edge, t, on) {
+                let flat = facet.field == NONE;
+                if flat && !self.hides(facet, edge, t, on) {
+                    return;
+                }
+                let winding = match &self.strips[i as usize] {
+                    Some(strips) if on.is_some() => strips.winding(self.model, at),
+                    _ => self.winding(facet, line, t),
+                };
+                if winding != 0 && (flat || self.hides(facet, edge, t, on)) {
                     order += winding;
                 }
             }
@@ -103,15 +121,14 @@ impl<'a> Clipper<'a> {
     /// How often a facet lies over the point of a line at t: once or not at all, unless it folds over itself; less than
     /// not at all where its neighbours lie over each other instead.
     fn winding(&self, facet: &Facet, line: &Scanline, t: f64) -> i32 {
-        let mut winding: i32 = 0;
+        let mut winding = 0;
         for &[a, b] in &self.model.sides[facet.sides[0] as usize..facet.sides[1] as usize] {
             let [a, b] = [a, b].map(|i| line.sighted(self.model.at[i as usize]));
             if line.crossing(a, b).is_some_and(|c| c < t) {
                 winding += if a.side > 0.0 { 1 } else { -1 };
             }
         }
-        // An open surface seen from behind runs the other way around.
-        if facet.field == NONE { winding.abs() } else { winding }
+        winding
     }
 
     /// Whether the surface of a facet is in front of an edge at t.

@@ -158,7 +158,7 @@ impl Segment {
             Segment::Arc { major, minor, from, to, .. } if major.length() == minor.length() => {
                 return major.length() * (to - from).abs();
             }
-            Segment::Arc { from, to, .. } => ((to - from).abs() * 16.0).ceil().max(1.0) as u32,
+            Segment::Arc { from, to, .. } => ((to - from).abs() * 4.0).ceil().max(1.0) as u32,
             Segment::Cubic { .. } => 4,
         };
         (0..parts).map(|i| self.part_length(start, i, parts)).sum()

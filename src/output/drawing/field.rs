@@ -221,6 +221,9 @@ pub fn on_all(fields: &[Field], start: DVec3) -> DVec3 {
             square += DMat3::from_cols(normal * normal.x, normal * normal.y, normal * normal.z);
             side += normal * value;
         }
+        if side.abs().max_element() <= f64::EPSILON * p.abs().max_element() {
+            break;
+        }
         let step = square.inverse() * side;
         if !step.is_finite() {
             return start;

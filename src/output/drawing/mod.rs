@@ -38,6 +38,7 @@ mod model;
 mod scene;
 mod smooth;
 mod span;
+mod strips;
 
 pub use camera::{Camera, CameraError, View, Window};
 pub use drawing::{Class, Drawing, Line, Path, Segment};

@@ -63,6 +63,10 @@ struct Smooth<'a> {
     patch: Vec<u32>,
     /// Whether each flat face is in front.
     front: Vec<bool>,
+    /// How far the last patch asked for is turned to the eye at each point of the mesh.
+    turns: Vec<(u32, f64)>,
+    /// The place of each patch's surface in the model.
+    fields: Vec<u32>,
     /// Sides of the front part of faces.
     parts: Vec<(u32, [u32; 2])>,
     passes: Vec<Pass>,
@@ -89,6 +93,8 @@ pub fn add_body(model: &mut Model, body: &Visible, base: u32, options: &Options)
         patches: vec![],
         patch: vec![],
         front: vec![],
+        turns: vec![(NONE, 0.0); mesh.points.len()],
+        fields: vec![],
         parts: vec![],
         passes: vec![],
         curves: BTreeMap::new(),
@@ -193,7 +199,20 @@ impl Smooth<'_> {
     }
 
     /// How far a round surface is turned to the eye at a point: the sine of an angle, 0 on the contour.
-    fn turned(&self, patch: u32, point: u32) -> f64 {
+    fn turned(&mut self, patch: u32, point: u32) -> f64 {
+        let known = point.checked_sub(self.base).map_or(usize::MAX, |i| i as usize);
+        match self.turns.get(known) {
+            Some(&(of, turn)) if of == patch => return turn,
+            _ => {}
+        }
+        let turn = self.turn(patch, point);
+        if let Some(slot) = self.turns.get_mut(known) {
+            *slot = (patch, turn);
+        }
+        turn
+    }
+
+    fn turn(&self, patch: u32, point: u32) -> f64 {
         let Patch { field, outward } = self.patches[patch as usize];
         let p = self.model.space[point as usize];
         let sine = field.local(p).normal.dot(self.model.camera.sight(p).normalize()) * outward;
@@ -201,7 +220,7 @@ impl Smooth<'_> {
     }
 
     /// Whether each end of a side of a face is in front.
-    fn ends_front(&self, face: u32, ends: [u32; 2]) -> [bool; 2] {
+    fn ends_front(&mut self, face: u32, ends: [u32; 2]) -> [bool; 2] {
         if face == NONE {
             return [false; 2];
         }
@@ -406,10 +425,15 @@ impl Smooth<'_> {
         let [p, q] = [a, b].map(|i| self.model.space[i as usize]);
         let (middle, length) = ((p + q) / 2.0, p.distance(q));
         let found = curve.near(&self.model.camera, middle, q - p, length);
-        let Some(on) = found.filter(|on| depth > 0 && on.distance(middle) > self.model.bound) else {
+        let off = found.map_or(0.0, |on| on.distance(middle));
+        let Some(on) = found.filter(|_| depth > 0 && off > self.model.bound) else {
             return nodes.push(b);
         };
         let middle = self.model.add_point(on);
+        // Half a chord is a quarter as far off.
+        if off < self.model.bound * 3.0 {
+            return nodes.extend([middle, b]);
+        }
         self.halve(curve, [a, middle], depth - 1, nodes);
         self.halve(curve, [middle, b], depth - 1, nodes);
     }
@@ -486,8 +510,8 @@ impl Smooth<'_> {
 
     /// Makes a facet of the front part of every face, and tells outlines their facet.
     fn add_facets(&mut self, first_outline: usize) {
-        let mut parts = std::mem::take(&mut self.parts);
-        parts.sort_by_key(|p| p.0);
+        let parts = by_face(std::mem::take(&mut self.parts), self.mesh.face_count());
+        self.fields = vec![NONE; self.patches.len()];
         let mut facet_of = vec![NONE; self.mesh.face_count()];
         for group in parts.chunk_by(|a, b| a.0 == b.0) {
             let face = group[0].0;
@@ -513,18 +537,31 @@ impl Smooth<'_> {
         let plane = Plane { normal, offset: normal.dot(on) };
         let patch = self.patches[self.patch[face as usize] as usize];
         let field = if matches!(patch.field, Field::Round(_)) {
-            match self.model.fields.iter().rposition(|f| *f == patch.field) {
-                Some(known) => known as u32,
-                None => {
-                    self.model.fields.push(patch.field);
-                    self.model.fields.len() as u32 - 1
-                }
+            let slot = &mut self.fields[self.patch[face as usize] as usize];
+            if *slot == NONE {
+                self.model.fields.push(patch.field);
+                *slot = self.model.fields.len() as u32 - 1;
             }
+            *slot
         } else {
             NONE
         };
         Facet { plane, sides, min, max, field }
     }
+}
+
+/// Parts sorted by their face, each face's in their order.
+fn by_face(parts: Vec<(u32, [u32; 2])>, faces: usize) -> Vec<(u32, [u32; 2])> {
+    let mut starts = vec![0u32; faces + 1];
+    parts.iter().for_each(|p| starts[p.0 as usize + 1] += 1);
+    (1..starts.len()).for_each(|i| starts[i] += starts[i - 1]);
+    let mut sorted = parts.clone();
+    for part in parts {
+        let place = &mut starts[part.0 as usize];
+        sorted[*place as usize] = part;
+        *place += 1;
+    }
+    sorted
 }
 
 /// The number of a patch, the same for the same surface.
