@@ -164,8 +164,8 @@ fn ahead(field: &Field, plane: &Plane, p: DVec3, sight: DVec3, reach: f64) -> f6
     let guess = -plane.distance(p) / slope;
     let mut s = if slope.abs() > 0.01 && guess.is_finite() { guess } else { 0.0 };
     for _ in 0..STEPS {
-        let local = field.local(p + sight * s);
-        let step = (local.value / local.normal.dot(sight)).clamp(-reach, reach);
+        let (value, normal) = field.slope(p + sight * s);
+        let step = (value / normal.dot(sight)).clamp(-reach, reach);
         if step.is_nan() {
             return s;
         }

@@ -66,42 +66,72 @@ impl Field {
     pub fn local(&self, p: DVec3) -> Local {
         match *self {
             Field::Flat(plane) => Local::flat(plane.distance(p), plane.normal),
-            Field::Round(surface) => local(&surface, p),
+            Field::Round(surface) => {
+                let (value, normal) = slope(&surface, p);
+                Local { value, normal, bends: bends(&surface, p, normal) }
+            }
+        }
+    }
+
+    /// Signed distance, mm, and unit normal at a point.
+    #[inline]
+    pub fn slope(&self, p: DVec3) -> (f64, DVec3) {
+        match *self {
+            Field::Flat(plane) => (plane.distance(p), plane.normal),
+            Field::Round(surface) => slope(&surface, p),
         }
     }
 }
 
-fn local(surface: &Surface, p: DVec3) -> Local {
+/// Signed distance and unit normal of a round surface at a point.
+fn slope(surface: &Surface, p: DVec3) -> (f64, DVec3) {
     match *surface {
         Surface::Cylinder { point, axis, radius } => {
             let (_, r, out) = around_axis(p - point, axis);
-            let bends = [(axis.cross(out), inverse(r)), (DVec3::ZERO, 0.0)];
-            Local { value: r - radius, normal: out, bends }
+            (r - radius, out)
         }
         Surface::Cone { apex, axis, slope } => {
             let (h, r, out) = around_axis(p - apex, axis);
             let secant = (1.0 + slope * slope).sqrt();
-            let bends = [(axis.cross(out), inverse(r * secant)), (DVec3::ZERO, 0.0)];
-            let normal = (out - axis * slope) / secant;
-            Local { value: (r - slope * h) / secant, normal, bends }
+            ((r - slope * h) / secant, (out - axis * slope) / secant)
         }
         Surface::Sphere { center, radius } => {
             let v = p - center;
             let r = v.length();
-            let normal = v.try_normalize().unwrap_or(DVec3::Z);
-            let (s, t) = normal.any_orthonormal_pair();
-            Local { value: r - radius, normal, bends: [(s, inverse(r)), (t, inverse(r))] }
+            (r - radius, if r > 0.0 { v / r } else { DVec3::Z })
         }
         Surface::Torus { center, axis, major, minor } => {
             let (h, r, out) = around_axis(p - center, axis);
             let tube = out * (r - major) + axis * h;
             let q = tube.length();
-            let normal = if q > 0.0 { tube / q } else { out };
-            let along = axis.cross(out);
-            let bends = [(along, normal.dot(out) * inverse(r)), (along.cross(normal), inverse(q))];
-            Local { value: q - minor, normal, bends }
+            (q - minor, if q > 0.0 { tube / q } else { out })
         }
-        Surface::Plane | Surface::Facets => Local::flat(0.0, DVec3::Z),
+        Surface::Plane | Surface::Facets => (0.0, DVec3::Z),
+    }
+}
+
+/// Two orthogonal directions across the normal of a round surface, and the curvatures along them, 1/mm.
+fn bends(surface: &Surface, p: DVec3, normal: DVec3) -> [(DVec3, f64); 2] {
+    let none = (DVec3::ZERO, 0.0);
+    match *surface {
+        Surface::Cylinder { point, axis, .. } => {
+            let (_, r, out) = around_axis(p - point, axis);
+            [(axis.cross(out), inverse(r)), none]
+        }
+        Surface::Cone { apex, axis, slope } => {
+            let (_, r, out) = around_axis(p - apex, axis);
+            [(axis.cross(out), inverse(r * (1.0 + slope * slope).sqrt())), none]
+        }
+        Surface::Sphere { center, .. } => {
+            let (s, t) = normal.any_orthonormal_pair();
+            [s, t].map(|d| (d, inverse((p - center).length())))
+        }
+        Surface::Torus { center, axis, major, .. } => {
+            let (h, r, out) = around_axis(p - center, axis);
+            let (along, q) = (axis.cross(out), (out * (r - major) + axis * h).length());
+            [(along, normal.dot(out) * inverse(r)), (along.cross(normal), inverse(q))]
+        }
+        Surface::Plane | Surface::Facets => [none; 2],
     }
 }
 
@@ -118,10 +148,7 @@ impl Constraint {
     /// A function that is 0 where it holds, and its gradient.
     fn value(&self, camera: &Camera, p: DVec3) -> (f64, DVec3) {
         match self {
-            Constraint::On(field) => {
-                let local = field.local(p);
-                (local.value, local.normal)
-            }
+            Constraint::On(field) => field.slope(p),
             Constraint::Contour(field) => {
                 let local = field.local(p);
                 let sight = camera.sight(p);
@@ -217,7 +244,7 @@ pub fn on_all(fields: &[Field], start: DVec3) -> DVec3 {
     for _ in 0..STEPS {
         let (mut square, mut side) = (DMat3::from_diagonal(DVec3::splat(DAMPING)), DVec3::ZERO);
         for field in fields {
-            let Local { value, normal, .. } = field.local(p);
+            let (value, normal) = field.slope(p);
             square += DMat3::from_cols(normal * normal.x, normal * normal.y, normal * normal.z);
             side += normal * value;
         }

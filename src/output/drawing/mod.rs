@@ -44,6 +44,8 @@ pub use camera::{Camera, CameraError, View, Window};
 pub use drawing::{Class, Drawing, Line, Path, Segment};
 pub use scene::{Body, Hidden, Kind, Method, Options, Scene, Stroke};
 
+use rayon::prelude::*;
+
 use arcs::ArcPiece;
 use clip::Clipper;
 use convex::Bodies;
@@ -121,15 +123,22 @@ fn hide_convex(model: &Model, sheet: &mut Sheet) {
 /// Puts curved edges on the sheet.
 fn hide_chains(model: &Model, counter: &Counter, sheet: &mut Sheet) {
     let tolerance = model.picture_size() * COINCIDENT;
-    let mut tally = counter.tally();
-    for chain in chain::chains(model) {
-        let edge = &model.edges[chain[0].edge as usize];
-        let fitted = Fitted::new(model, &chain, tolerance);
-        for stretch in counter.hide_chain(&chain, &mut tally) {
-            let mark = mark(edge, stretch.order);
-            fitted.shapes(&stretch, |shape| sheet.add_shape(shape, mark));
-        }
-    }
+    let chains = chain::chains(model);
+    let drawn = chains.par_iter().map_init(
+        || counter.tally(),
+        |tally, chain| {
+            let edge = &model.edges[chain[0].edge as usize];
+            let fitted = Fitted::new(model, chain, tolerance);
+            let mut shapes = vec![];
+            for stretch in counter.hide_chain(chain, tally) {
+                let mark = mark(edge, stretch.order);
+                fitted.shapes(&stretch, |shape| shapes.push((shape, mark)));
+            }
+            shapes
+        },
+    );
+    let drawn: Vec<Vec<(Shape, Mark)>> = drawn.collect();
+    drawn.into_iter().flatten().for_each(|(shape, mark)| sheet.add_shape(shape, mark));
 }
 
 /// How a part of an edge behind so many faces is drawn.

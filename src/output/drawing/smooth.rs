@@ -122,8 +122,7 @@ fn faithful_origins(mesh: &PolyMesh, tolerance: f64) -> Vec<bool> {
         if round[origin] {
             let field = Field::Round(mesh.origins()[origin].surface);
             let [p, q] = [a, b].map(|i| mesh.points[i as usize]);
-            let far = |p: DVec3| field.local(p).value.abs() > tolerance;
-            round[origin] = !far(p) && !far((p + q) / 2.0);
+            round[origin] = field.slope((p + q) / 2.0).0.abs() <= tolerance;
         }
     });
     round
@@ -140,7 +139,7 @@ impl Smooth<'_> {
             let origin = face.origin_index() as usize;
             let patch = if round[origin] {
                 let field = Field::Round(face.origin().surface);
-                let inside = field.local(on).normal.dot(normal) < 0.0;
+                let inside = field.slope(on).1.dot(normal) < 0.0;
                 let outward = if inside { -1.0 } else { 1.0 };
                 let known = &mut of_origin[origin][usize::from(inside)];
                 if *known == NONE {
@@ -175,15 +174,19 @@ impl Smooth<'_> {
             }
         });
         for (point, met) in met.iter().enumerate() {
-            let met: Vec<u32> = met.iter().copied().filter(|&p| p != NONE).collect();
-            if !met.iter().any(|&p| self.is_round(p)) {
-                continue;
-            }
-            let fields: Vec<Field> = met.iter().map(|&p| self.patches[p as usize].field).collect();
+            let met = &met[..met.iter().position(|&p| p == NONE).unwrap_or(met.len())];
             let start = self.mesh.points[point];
-            let moved = on_all(&fields, start);
-            if moved != start && moved.distance(start) <= 32.0 * self.model.bound {
-                self.model.move_point(self.base + point as u32, moved);
+            let rounding = f64::EPSILON * start.abs().max_element();
+            let mut fields = [Field::Flat(Plane { normal: DVec3::ZERO, offset: 0.0 }); 3];
+            let known = fields.iter_mut().zip(met);
+            known.for_each(|(field, &p)| *field = self.patches[p as usize].field);
+            let fields = &fields[..met.len()];
+            let round = fields.iter().any(|f| matches!(f, Field::Round(_)));
+            if round && fields.iter().any(|f| f.slope(start).0.abs() > rounding) {
+                let moved = on_all(fields, start);
+                if moved.distance(start) <= 32.0 * self.model.bound {
+                    self.model.move_point(self.base + point as u32, moved);
+                }
             }
         }
     }
@@ -215,7 +218,7 @@ impl Smooth<'_> {
     fn turn(&self, patch: u32, point: u32) -> f64 {
         let Patch { field, outward } = self.patches[patch as usize];
         let p = self.model.space[point as usize];
-        let sine = field.local(p).normal.dot(self.model.camera.sight(p).normalize()) * outward;
+        let sine = field.slope(p).1.dot(self.model.camera.sight(p).normalize()) * outward;
         if sine.abs() < EDGE_ON { 0.0 } else { sine }
     }
 
@@ -294,7 +297,7 @@ impl Smooth<'_> {
                 contour.meeting(other, camera, start, reach)
             }
             None => {
-                let across = (q - p).cross(field.local(start).normal);
+                let across = (q - p).cross(field.slope(start).1);
                 contour.near(camera, start, across, reach)
             }
         };
@@ -342,7 +345,7 @@ impl Smooth<'_> {
             let p = self.model.space[p as usize];
             let [m, n] = patches.map(|patch| {
                 let Patch { field, outward } = self.patches[patch as usize];
-                field.local(p).normal * outward
+                field.slope(p).1 * outward
             });
             m.dot(n) > 0.0 && m.cross(n).length() < TANGENT
         })
