@@ -138,8 +138,23 @@ impl<'a> Counter<'a> {
                 }
             });
         }
+        self.settle_ends(chain, &mut turns);
         turns.sort_unstable_by(|a, b| a.at.total_cmp(&b.at));
         self.stretches(chain, &turns)
+    }
+
+    /// Brings turns that are beyond an end of the chain to the other end, if it is closed, or to that end.
+    fn settle_ends(&self, chain: &[Chord], turns: &mut [Turn]) {
+        let (end, ends) = (chain.len() as f64, [chain[0].ends[0], chain[chain.len() - 1].ends[1]]);
+        for turn in turns.iter_mut().filter(|t| !(0.0..=end).contains(&t.at)) {
+            if ends[0] == ends[1] {
+                turn.at = turn.at.rem_euclid(end);
+            } else {
+                let last = turn.at > 0.0;
+                turn.at = turn.at.clamp(0.0, end);
+                turn.point = self.model.space[ends[usize::from(last)] as usize];
+            }
+        }
     }
 
     /// Counts along a chain. The count is kept right by a sight line in each long stretch: chords cross where curves
@@ -152,7 +167,8 @@ impl<'a> Counter<'a> {
         let (mut parts, mut change): (Vec<(Stretch, i32)>, i32) = (vec![], 0);
         for (at, point, by) in marks {
             let to = (at, point);
-            if point.distance(from.1) > self.model.contact || at - from.0 > 1.0 {
+            let apart = point.distance(from.1) > self.model.contact || at - from.0 > 1.0;
+            if at > from.0 && apart {
                 parts.push((Stretch { from, to, order: 0 }, std::mem::take(&mut change)));
                 from = to;
             }

@@ -14,11 +14,9 @@ pub enum Field {
     Round(Surface),
 }
 
-/// Value, gradient and what the second derivatives need of a field at a point.
+/// The normal of a field at a point, and how it bends there.
 #[derive(Clone, Copy, Debug)]
 pub struct Local {
-    /// Signed distance, mm.
-    pub value: f64,
     /// Unit normal, towards larger values.
     pub normal: DVec3,
     /// Two orthogonal directions across the normal with the curvatures along them, 1/mm.
@@ -26,8 +24,8 @@ pub struct Local {
 }
 
 impl Local {
-    fn flat(value: f64, normal: DVec3) -> Local {
-        Local { value, normal, bends: [(DVec3::ZERO, 0.0); 2] }
+    fn flat(normal: DVec3) -> Local {
+        Local { normal, bends: [(DVec3::ZERO, 0.0); 2] }
     }
 
     /// The derivative of the normal along a vector.
@@ -65,10 +63,10 @@ impl Field {
     /// The field at a point.
     pub fn local(&self, p: DVec3) -> Local {
         match *self {
-            Field::Flat(plane) => Local::flat(plane.distance(p), plane.normal),
+            Field::Flat(plane) => Local::flat(plane.normal),
             Field::Round(surface) => {
-                let (value, normal) = slope(&surface, p);
-                Local { value, normal, bends: bends(&surface, p, normal) }
+                let (_, normal) = slope(&surface, p);
+                Local { normal, bends: bends(&surface, p, normal) }
             }
         }
     }
@@ -291,7 +289,8 @@ mod tests {
             assert!((here.normal.length() - 1.0).abs() < 1e-12);
             for v in [DVec3::X, DVec3::Y, DVec3::Z] {
                 let (before, after) = (field.local(p - v * small), field.local(p + v * small));
-                let slope = (after.value - before.value) / (2.0 * small);
+                let [low, high] = [p - v * small, p + v * small].map(|p| field.slope(p).0);
+                let slope = (high - low) / (2.0 * small);
                 assert!((slope - here.normal.dot(v)).abs() < 1e-8, "{surface:?}");
                 let turn = (after.normal - before.normal) / (2.0 * small);
                 assert!(turn.distance(here.bend(v)) < 1e-8, "{surface:?}");
@@ -309,7 +308,7 @@ mod tests {
             for along in DVec3::AXES {
                 let Some(p) = curve.near(&camera, start, along, 10.0) else { continue };
                 let local = field.local(p);
-                assert!(local.value.abs() < 1e-12 && along.dot(p - start).abs() < 1e-12);
+                assert!(field.slope(p).0.abs() < 1e-12 && along.dot(p - start).abs() < 1e-12);
                 assert!(local.normal.dot(camera.sight(p)).abs() < 1e-10);
             }
         }
@@ -320,6 +319,6 @@ mod tests {
         let [a, _, c, _] = surfaces().map(Field::Round);
         let plane = Field::Flat(Plane { normal: DVec3::Y, offset: 3.0 });
         let p = on_all(&[a, c, plane], dvec3(3.0, 3.2, 6.0));
-        assert!([a, c, plane].iter().all(|f| f.local(p).value.abs() < 1e-11));
+        assert!([a, c, plane].iter().all(|f| f.slope(p).0.abs() < 1e-11));
     }
 }

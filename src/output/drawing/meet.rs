@@ -37,10 +37,10 @@ impl<'a> Strand<'a> {
         self.pulled(camera, self.ends[0].lerp(self.ends[1], s), self.chord())
     }
 
-    /// The place on the chord under a point.
+    /// The place on the chord under a point, a little less than 0 or more than 1 for a point over a neighbouring chord.
     pub fn place(&self, p: DVec3) -> f64 {
         let chord = self.chord();
-        ((p - self.ends[0]).dot(chord) / chord.length_squared()).clamp(0.0, 1.0)
+        ((p - self.ends[0]).dot(chord) / chord.length_squared()).clamp(-0.5, 1.5)
     }
 
     /// A point near the curve, moved onto it across a direction.

@@ -89,15 +89,11 @@ fn hide(model: &Model, method: Method, sheet: &mut Sheet) {
         return hide_convex(model, sheet);
     }
     let clipper = Clipper::new(model);
-    if method == Method::Clip {
-        let mut desk = clipper.desk();
-        return sheet.add_edges(model, 0..model.edges.len(), |edge, out| clipper.hide(edge, &mut desk, out));
-    }
     let (mut desk, counter) = (clipper.desk(), Counter::new(model, &clipper));
     let mut tally = counter.tally();
     for hull in &model.hulls {
         sheet.add_edges(model, hull.edges.clone(), |edge, out| {
-            if hull.reached {
+            if method == Method::Clip || hull.reached {
                 clipper.hide(edge, &mut desk, out);
             } else {
                 counter.hide(edge, &mut tally, out);

@@ -77,9 +77,10 @@ pub enum Hidden {
 pub enum Method {
     /// Convex sets when all bodies are convex polyhedra, the count otherwise.
     Auto,
-    /// Nishita's count: how many faces are in front, changed where lines cross contours.
+    /// Nishita's count: how many faces are in front, changed where lines cross contours. Edges of bodies that
+    /// reach into each other, and strokes, may run through faces, which contours do not tell; they are clipped.
     Count,
-    /// Every edge is clipped against every face in front of it.
+    /// Every straight edge is clipped against every face in front of it; curved ones are counted.
     Clip,
 }
 
