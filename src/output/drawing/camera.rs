@@ -210,9 +210,8 @@ impl Camera {
     /// Distance in front of the plane before the eye in which the picture ends; negative beyond it. Infinite for a
     /// parallel projection.
     pub fn ahead(&self, p: DVec3) -> f64 {
-        self.distance.map_or(f64::INFINITY, |d| {
-            d * (1.0 - NEAREST) - (p - self.target).dot(self.toward)
-        })
+        self.distance
+            .map_or(f64::INFINITY, |d| d * (1.0 - NEAREST) - (p - self.target).dot(self.toward))
     }
 
     /// The image of a point, and its magnification. Meaningless where [`Camera::ahead`] is negative.

@@ -180,10 +180,10 @@ mod tests {
         let (p, q) = (dvec2(-200.0, 100.0), dvec2(19_100.0, 12_500.0));
         let mut found = vec![false; 400];
         cells.along(p, q, |i| found[i as usize] = true);
-        for i in 0..400 {
+        for (i, found) in found.iter().enumerate() {
             let samples = (0..=4000).map(|k| p.lerp(q, f64::from(k) / 4000.0));
             let met = samples.into_iter().any(|s| (s - center(i)).abs().cmple(half).all());
-            assert!(!met || found[i], "box {i}");
+            assert!(!met || *found, "box {i}");
         }
         assert!(found.iter().filter(|f| **f).count() < 150);
         let mut here = vec![];

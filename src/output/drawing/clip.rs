@@ -7,12 +7,12 @@ use glam::DVec3;
 
 use super::{
     cells::{Cells, Extent, Sieve},
-    strips::Strips,
     field::Field,
     lattice::{Plane, Scanline},
     links::NONE,
     model::{Edge, Facet, Model},
     span::{Span, Step, spans},
+    strips::Strips,
 };
 
 /// The facets of a model, ready to be asked.
@@ -89,13 +89,7 @@ impl<'a> Clipper<'a> {
 
     /// How many facets are in front of an edge at t; the edge runs along `line`. `on` is the true point there if the
     /// edge is a chord.
-    pub fn order_at(
-        &self,
-        edge: &Edge,
-        line: &Scanline,
-        t: f64,
-        on: Option<DVec3>,
-    ) -> i32 {
+    pub fn order_at(&self, edge: &Edge, line: &Scanline, t: f64, on: Option<DVec3>) -> i32 {
         let at = line.at(t);
         let mut order = 0;
         self.cells.at(at, |i| {

@@ -131,7 +131,8 @@ impl<'a> Counter<'a> {
                 if sieve.passes(i) {
                     let outline = &self.model.outlines[i as usize];
                     let turn = self.crossing(&line, outline).and_then(|(at, by, sighted)| {
-                        let (point, s) = self.true_crossing(edge, chord.ends, at, outline, sighted)?;
+                        let (point, s) =
+                            self.true_crossing(edge, chord.ends, at, outline, sighted)?;
                         Some(Turn { at: number as f64 + s, by, point })
                     });
                     turns.extend(turn);

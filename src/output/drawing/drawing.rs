@@ -168,7 +168,10 @@ impl Segment {
         let width = 1.0 / f64::from(parts);
         let middle = (f64::from(part) + 0.5) * width;
         let points = GAUSS.iter().flat_map(|&(x, w)| [(x, w), (-x, w)]);
-        points.map(|(x, w)| w * self.velocity(start, middle + x * width / 2.0).length()).sum::<f64>() * width
+        points
+            .map(|(x, w)| w * self.velocity(start, middle + x * width / 2.0).length())
+            .sum::<f64>()
+            * width
             / 2.0
     }
 }
@@ -219,7 +222,11 @@ impl Drawing {
     pub fn bounds(&self) -> Option<(DVec2, DVec2)> {
         let points = self.lines.iter().flat_map(|line| {
             let start = std::iter::once(line.path.start);
-            start.chain(line.path.pieces().flat_map(|(p, s)| (1..=8).map(move |i| s.at(p, f64::from(i) / 8.0))))
+            start.chain(
+                line.path
+                    .pieces()
+                    .flat_map(|(p, s)| (1..=8).map(move |i| s.at(p, f64::from(i) / 8.0))),
+            )
         });
         let none = dvec2(f64::INFINITY, f64::INFINITY);
         let (min, max) = points.fold((none, -none), |(min, max), p| (min.min(p), max.max(p)));
@@ -242,11 +249,8 @@ mod tests {
         };
         // 4 a E(e) with e = 4/5
         assert!((ellipse.length(DVec2::ZERO) - 25.526_998_863_398_124).abs() < 1e-9);
-        let straight = Segment::Cubic {
-            first: dvec2(1.0, 1.0),
-            second: dvec2(2.0, 2.0),
-            to: dvec2(3.0, 3.0),
-        };
+        let straight =
+            Segment::Cubic { first: dvec2(1.0, 1.0), second: dvec2(2.0, 2.0), to: dvec2(3.0, 3.0) };
         assert!((straight.length(DVec2::ZERO) - 3.0 * 2.0f64.sqrt()).abs() < 1e-12);
         assert!(ellipse.end().distance(dvec2(6.0, 2.0)) < 1e-12);
     }

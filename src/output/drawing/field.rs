@@ -162,11 +162,7 @@ impl Constraint {
 const STEPS: usize = 20;
 
 /// The point where three functions, given with their gradients, are 0.
-fn newton(
-    start: DVec3,
-    reach: f64,
-    values: impl Fn(DVec3) -> [(f64, DVec3); 3],
-) -> Option<DVec3> {
+fn newton(start: DVec3, reach: f64, values: impl Fn(DVec3) -> [(f64, DVec3); 3]) -> Option<DVec3> {
     let mut p = start;
     for _ in 0..STEPS {
         let [(f, df), (g, dg), (h, dh)] = values(p);

@@ -47,11 +47,13 @@ pub struct Fitted<'a> {
 impl<'a> Fitted<'a> {
     /// A chain whose shapes are within `tolerance` mm.
     pub fn new(model: &'a Model, chain: &'a [Chord], tolerance: f64) -> Fitted<'a> {
-        let mut fitted = Fitted { model, chain, nodes: vec![], straight: false, ellipse: None, tolerance };
+        let mut fitted =
+            Fitted { model, chain, nodes: vec![], straight: false, ellipse: None, tolerance };
         fitted.nodes = (0..=chain.len()).map(|i| fitted.corner(i)).collect();
         let mut points: Vec<DVec2> = fitted.nodes.iter().map(|n| n.at).collect();
         if points.len() < 12 {
-            points = (0..=12).map(|i| fitted.point(chain.len() as f64 * f64::from(i) / 12.0)).collect();
+            points =
+                (0..=12).map(|i| fitted.point(chain.len() as f64 * f64::from(i) / 12.0)).collect();
         }
         fitted.straight = is_straight(&points, tolerance);
         if !fitted.straight {
@@ -112,9 +114,8 @@ impl<'a> Fitted<'a> {
 
     /// How far the curve goes on from a node without changing between straight and bent.
     fn run(&self, points: &[DVec2], from: usize) -> (usize, bool) {
-        let bent = |i: usize| {
-            i + 2 < points.len() && !is_straight(&points[i..i + 3], self.tolerance)
-        };
+        let bent =
+            |i: usize| i + 2 < points.len() && !is_straight(&points[i..i + 3], self.tolerance);
         let last = points.len() - 1;
         if from + 2 > last || bent(from) {
             let to = (from + 1..last).find(|&i| i + 3 < last && !bent(i) && !bent(i + 1));
@@ -186,9 +187,8 @@ fn is_straight(points: &[DVec2], tolerance: f64) -> bool {
 /// The two ends of points that lie on a line.
 fn extremes(points: &[DVec2]) -> (DVec2, DVec2) {
     let far = |from: DVec2| {
-        let by_distance = |a: &&DVec2, b: &&DVec2| {
-            a.distance_squared(from).total_cmp(&b.distance_squared(from))
-        };
+        let by_distance =
+            |a: &&DVec2, b: &&DVec2| a.distance_squared(from).total_cmp(&b.distance_squared(from));
         *points.iter().max_by(by_distance).expect("there are points")
     };
     let low = far(points[0]);

@@ -90,9 +90,7 @@ fn sort_few(sides: &mut [Side]) {
 
 fn link(point: u32, side: Side, partner: Option<Side>) -> Link {
     match (side.up, partner) {
-        (true, Some(other)) => {
-            Link { a: point, b: side.other, left: side.face, right: other.face }
-        }
+        (true, Some(other)) => Link { a: point, b: side.other, left: side.face, right: other.face },
         (true, None) => Link { a: point, b: side.other, left: side.face, right: NONE },
         (false, _) => Link { a: side.other, b: point, left: side.face, right: NONE },
     }

@@ -60,13 +60,7 @@ impl<'a> Strand<'a> {
 /// The points of two strands whose images fall together, from places on their chords where the chords'
 /// images cross. Where Newton's method finds none, strands of one surface do not cross, since chords of a
 /// contour and of a curve beside it may cross where the curves do not; others cross where their chords do.
-pub fn meet(
-    camera: &Camera,
-    one: &Strand,
-    s: f64,
-    other: &Strand,
-    t: f64,
-) -> Option<[DVec3; 2]> {
+pub fn meet(camera: &Camera, one: &Strand, s: f64, other: &Strand, t: f64) -> Option<[DVec3; 2]> {
     let start = [one.at(camera, s), other.at(camera, t)];
     let beside = match (one.curve, other.curve) {
         (Some(a), Some(b)) => a.shares_surface(b),
@@ -85,9 +79,8 @@ fn refined(camera: &Camera, strands: [&Strand; 2], start: [DVec3; 2]) -> Option<
         if !within {
             return None;
         }
-        points = [0, 1].map(|i| {
-            strands[i].pulled(camera, points[i] + tangents[i] * moves[i], tangents[i])
-        });
+        points = [0, 1]
+            .map(|i| strands[i].pulled(camera, points[i] + tangents[i] * moves[i], tangents[i]));
         let size = points[0].abs().max_element().max(points[1].abs().max_element());
         if moves[0].abs().max(moves[1].abs()) <= SETTLED * size {
             return Some(points);

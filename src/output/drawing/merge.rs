@@ -56,12 +56,7 @@ pub fn merged(pieces: &[Piece], tolerance: f64) -> Vec<Piece> {
 }
 
 /// Merges pieces of nearly one direction.
-fn merge_parallel(
-    pieces: &[Piece],
-    parallel: &[(f64, u32)],
-    tolerance: f64,
-    out: &mut Vec<Piece>,
-) {
+fn merge_parallel(pieces: &[Piece], parallel: &[(f64, u32)], tolerance: f64, out: &mut Vec<Piece>) {
     if let &[(_, only)] = parallel {
         return out.push(pieces[only as usize]);
     }

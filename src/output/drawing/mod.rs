@@ -30,6 +30,7 @@ mod drawing;
 mod field;
 mod fit;
 mod frustum;
+mod join;
 mod lattice;
 mod links;
 mod meet;
@@ -97,6 +98,9 @@ fn hide(model: &Model, method: Method, sheet: &mut Sheet) {
                 clipper.hide(edge, &mut desk, out);
             } else {
                 counter.hide(edge, &mut tally, out);
+                debug_assert!(agree(model, edge, out, |edge, out| {
+                    clipper.hide(edge, &mut desk, out);
+                }));
             }
         });
     }
@@ -115,6 +119,28 @@ fn hide_convex(model: &Model, sheet: &mut Sheet) {
         });
     }
 }
+
+/// Whether another method finds as much of an edge visible. Where a true surface stands in for facets, the methods
+/// need not agree.
+fn agree(
+    model: &Model,
+    edge: &Edge,
+    spans: &[Span],
+    other: impl FnOnce(&Edge, &mut Vec<Span>),
+) -> bool {
+    let visible = |spans: &[Span]| -> f64 {
+        spans.iter().filter(|s| s.order == 0).map(|s| s.to - s.from).sum()
+    };
+    let mut found = vec![];
+    other(edge, &mut found);
+    let [p, q] = [edge.a, edge.b].map(|i| model.at[i as usize]);
+    let gap = (visible(spans) - visible(&found)).abs() * p.distance(q);
+    !model.fields.is_empty() || gap <= model.dust * DISPUTED
+}
+
+/// Two methods may differ by so many lengths of dust: where an edge lies in the plane of a face, one stops at the
+/// corner and the other at the border.
+const DISPUTED: f64 = 1e6;
 
 /// Puts curved edges on the sheet.
 fn hide_chains(model: &Model, counter: &Counter, sheet: &mut Sheet) {
@@ -207,40 +233,41 @@ impl Sheet {
         }
     }
 
-    /// Merges what coincides within `tolerance` mm, measures, and keeps what is wanted.
+    /// Merges what coincides within `tolerance` mm, measures, and keeps what is wanted, joined to paths.
     fn assemble(self, tolerance: f64, hidden: Hidden) -> Drawing {
-        let straight = merge::merged(&self.straight, tolerance).into_iter().map(|p| {
-            (Path::of(p.from, Segment::Line { to: p.to }), p.mark)
-        });
+        let straight = merge::merged(&self.straight, tolerance)
+            .into_iter()
+            .map(|p| (Path::of(p.from, Segment::Line { to: p.to }), p.mark));
         let arcs = arcs::merged(&self.arcs, tolerance).into_iter().map(|a| {
-            let (from, to) = (a.from, a.to);
             let conic::Ellipse { center, major, minor } = a.ellipse;
-            let arc = Segment::Arc { center, major, minor, from, to };
-            (Path::of(a.ellipse.at(from), arc), a.mark)
+            let arc = Segment::Arc { center, major, minor, from: a.from, to: a.to };
+            (Path::of(a.ellipse.at(a.from), arc), a.mark)
         });
-        let mut drawing = Drawing::default();
-        for (path, mark) in straight.chain(arcs).chain(self.curves) {
-            drawing.add(path, mark, hidden);
+        let all: Vec<(Path, Mark)> = straight.chain(arcs).chain(self.curves).collect();
+        let length = |class: Class| {
+            let of = all.iter().filter(|(_, mark)| mark.class == class);
+            of.map(|(path, _)| path.length()).sum::<f64>()
+        };
+        let counted = all.iter().filter(|(_, mark)| mark.class <= Class::Hidden);
+        Drawing {
+            visible: length(Class::Visible),
+            hidden: length(Class::Hidden),
+            segments: counted.map(|(path, _)| path.segments.len()).sum(),
+            lines: join::joined(all, (tolerance / 8.0).max(f64::MIN_POSITIVE))
+                .into_iter()
+                .filter_map(|(path, mark)| line(path, mark, hidden))
+                .collect(),
         }
-        drawing
     }
 }
 
-impl Drawing {
-    /// Measures a line and keeps it if it is wanted.
-    fn add(&mut self, path: Path, mark: Mark, hidden: Hidden) {
-        match mark.class {
-            Class::Visible => self.visible += path.length(),
-            Class::Hidden => self.hidden += path.length(),
-            Class::Cutting | Class::Centre => {}
-        }
-        self.segments += usize::from(mark.class <= Class::Hidden);
-        let class = match (mark.class, hidden) {
-            (Class::Hidden, Hidden::Off) => return,
-            (Class::Hidden, Hidden::Depth(most)) if mark.order <= most => Class::Visible,
-            (Class::Hidden, Hidden::Depth(_)) => return,
-            (class, _) => class,
-        };
-        self.lines.push(Line { class, kind: mark.kind, id: mark.id, order: mark.order, path });
-    }
+/// The line that is drawn, if it is wanted.
+fn line(path: Path, mark: Mark, hidden: Hidden) -> Option<Line> {
+    let class = match (mark.class, hidden) {
+        (Class::Hidden, Hidden::Off) => return None,
+        (Class::Hidden, Hidden::Depth(most)) if mark.order <= most => Class::Visible,
+        (Class::Hidden, Hidden::Depth(_)) => return None,
+        (class, _) => class,
+    };
+    Some(Line { class, kind: mark.kind, id: mark.id, order: mark.order, path })
 }

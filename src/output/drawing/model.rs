@@ -164,7 +164,14 @@ impl Model {
         for stroke in &strokes {
             let corners = base..base + stroke.points.len() as u32;
             for (a, b) in corners.clone().zip(corners.skip(1)) {
-                model.edges.push(Edge { a, b, kind: stroke.kind, id: stroke.id, curve: NONE, back: false });
+                model.edges.push(Edge {
+                    a,
+                    b,
+                    kind: stroke.kind,
+                    id: stroke.id,
+                    curve: NONE,
+                    back: false,
+                });
             }
             base += stroke.points.len() as u32;
         }
@@ -172,12 +179,7 @@ impl Model {
     }
 
     /// All points in space and on the lattice.
-    fn placed(
-        bodies: &[Visible],
-        strokes: &[Stroke],
-        camera: &Camera,
-        options: &Options,
-    ) -> Model {
+    fn placed(bodies: &[Visible], strokes: &[Stroke], camera: &Camera, options: &Options) -> Model {
         let corners = bodies.iter().flat_map(|b| &b.mesh.points);
         let ends = strokes.iter().flat_map(|s| &s.points);
         let before = |p: &DVec3| if camera.ahead(*p) < 0.0 { camera.target() } else { *p };

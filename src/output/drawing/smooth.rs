@@ -306,14 +306,18 @@ impl Smooth<'_> {
 
     /// An edge between two surfaces, or a border.
     fn add_sharp(&mut self, link: &Link, ends: [u32; 2], left: [bool; 2], right: [bool; 2]) {
-        let patches = [link.left, link.right]
-            .map(|f| if f == NONE { NONE } else { self.patch[f as usize] });
+        let patches =
+            [link.left, link.right].map(|f| if f == NONE { NONE } else { self.patch[f as usize] });
         let mut nodes = vec![(ends[0], left[0], right[0])];
         let passes = [(0, left), (1, right)].map(|(side, front)| {
             (front[0] != front[1]).then(|| {
                 let other = patches[1 - side];
                 let at = self.contour_point(patches[side], (other != NONE).then_some(other), ends);
-                self.passes.push(Pass { face: [link.left, link.right][side], at, out: front[0] == (side == 0) });
+                self.passes.push(Pass {
+                    face: [link.left, link.right][side],
+                    at,
+                    out: front[0] == (side == 0),
+                });
                 (side, at)
             })
         });
@@ -450,7 +454,8 @@ impl Smooth<'_> {
             for leaving in group.iter().filter(|p| p.out) {
                 let from = self.model.space[leaving.at as usize];
                 let distance = |at: &u32| self.model.space[*at as usize].distance_squared(from);
-                let near = (0..back.len()).min_by(|&i, &j| distance(&back[i]).total_cmp(&distance(&back[j])));
+                let near = (0..back.len())
+                    .min_by(|&i, &j| distance(&back[i]).total_cmp(&distance(&back[j])));
                 let Some(near) = near else { break };
                 let to = back.swap_remove(near);
                 if to != leaving.at {

@@ -117,8 +117,7 @@ fn a_camera_among_the_solids_sees_what_is_before_it() {
         // One box is behind the eye, and the eye is inside another.
         let found = drawn(&[room(-9.0), room(-2.0), room(8.0)], &eye, method);
         let inside = found.lines.iter().filter(|l| l.id == 1).count();
-        let seen: f64 =
-            found.lines.iter().filter(|l| l.id == 2).map(|l| l.path.length()).sum();
+        let seen: f64 = found.lines.iter().filter(|l| l.id == 2).map(|l| l.path.length()).sum();
         assert!(near(seen, before.visible + before.hidden, 1e-9), "{method:?}: {seen}");
         assert!(inside > 0 && found.lines.iter().all(|l| l.id != 0));
     }

@@ -7,7 +7,7 @@ use katachi::{
         Polyhedron,
         primitive::{cuboid, sphere},
     },
-    output::drawing::{Camera, Class, Drawing, Method},
+    output::drawing::{Camera, Class, Drawing, Method, Segment},
 };
 
 use super::scenes::{drawn, near, union};
@@ -17,7 +17,8 @@ struct Random(u64);
 
 impl Random {
     fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
@@ -58,7 +59,8 @@ impl Triangles {
     /// Whether something is between a point and the eye, farther from the point than a hair.
     fn hide(&self, camera: &Camera, p: DVec3) -> bool {
         let sight = camera.sight(p);
-        let (unit, end) = (sight.normalize(), camera.eye().map_or(f64::INFINITY, |_| sight.length()));
+        let (unit, end) =
+            (sight.normalize(), camera.eye().map_or(f64::INFINITY, |_| sight.length()));
         self.0.iter().any(|&[a, b, c]| {
             // Möller and Trumbore.
             let (u, v, w) = (b - a, c - a, p - a);
@@ -74,12 +76,12 @@ impl Triangles {
 /// The distance of a place from the nearest visible line.
 fn off(drawing: &Drawing, at: DVec2) -> f64 {
     let visible = drawing.lines.iter().filter(|l| l.class == Class::Visible);
-    let distance = |l: &katachi::output::drawing::Line| {
-        let (p, q) = (l.path.start, l.path.end());
+    let distance = |(p, segment): (DVec2, &Segment)| {
+        let q = segment.end();
         let t = (at - p).dot(q - p) / (q - p).length_squared();
         p.lerp(q, t.clamp(0.0, 1.0)).distance(at)
     };
-    visible.map(distance).fold(f64::INFINITY, f64::min)
+    visible.flat_map(|l| l.path.pieces().map(distance)).fold(f64::INFINITY, f64::min)
 }
 
 /// Holds points of all edges against the drawing: seen points are drawn, unseen points are not.
@@ -181,6 +183,23 @@ fn first(balls: &[(DVec3, f64)], camera: &Camera, at: DVec2) -> Option<usize> {
     met.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, i)| i)
 }
 
+/// Holds points of an outline against what is seen on both sides of it.
+fn check_outline(
+    balls: &[(DVec3, f64)],
+    camera: &Camera,
+    class: Class,
+    (start, segment): (DVec2, &Segment),
+    scene: u64,
+) {
+    for i in 0..9 {
+        let t = 0.05 + 0.1 * f64::from(i);
+        let [p, q] = [t, t + 1e-6].map(|t| segment.at(start, t));
+        let across = (q - p).perp().normalize() * 1e-6;
+        let [left, right] = [p + across, p - across].map(|p| first(balls, camera, p));
+        assert_eq!(left != right, class == Class::Visible, "scene {scene} at {p}");
+    }
+}
+
 #[test]
 fn outlines_of_balls_part_what_is_seen() {
     for scene in 0..40 {
@@ -200,14 +219,8 @@ fn outlines_of_balls_part_what_is_seen() {
         let drawing = drawn(&solids, &camera, Method::Auto);
         let mut length = 0.0;
         for line in drawing.lines.iter() {
-            let (start, segment) = line.path.pieces().next().expect("a path has a piece");
-            for i in 0..9 {
-                let t = 0.05 + 0.1 * f64::from(i);
-                let [p, q] = [t, t + 1e-6].map(|t| segment.at(start, t));
-                let across = (q - p).perp().normalize() * 1e-6;
-                let [left, right] = [p + across, p - across].map(|p| first(&balls, &camera, p));
-                let parts = left != right;
-                assert_eq!(parts, line.class == Class::Visible, "scene {scene} at {p}");
+            for (start, segment) in line.path.pieces() {
+                check_outline(&balls, &camera, line.class, (start, segment), scene);
             }
             length += line.path.length();
         }

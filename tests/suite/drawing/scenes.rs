@@ -31,11 +31,8 @@ pub fn boxes(name: &str) -> Vec<Polyhedron> {
 
 fn placed_box(recipe: &Value) -> Polyhedron {
     let half = vector(&recipe["size"]) / 2.0;
-    let rows = DMat3::from_cols(
-        vector(&recipe["R"][0]),
-        vector(&recipe["R"][1]),
-        vector(&recipe["R"][2]),
-    );
+    let rows =
+        DMat3::from_cols(vector(&recipe["R"][0]), vector(&recipe["R"][1]), vector(&recipe["R"][2]));
     cuboid(-half, half).placed(&Placement::new(rows.transpose(), vector(&recipe["center"])))
 }
 
