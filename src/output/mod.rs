@@ -1,6 +1,7 @@
-//! What leaves: mesh files and OpenSCAD source. Everything here returns bytes or text; only the app
+//! What leaves: mesh files, OpenSCAD source and drawings. Everything here returns bytes or text; only the app
 //! touches files.
 
+pub mod drawing;
 pub mod mesh;
 pub mod number;
 pub mod scad;

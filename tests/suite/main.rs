@@ -1,6 +1,7 @@
 //! One test binary for everything that is tested from outside.
 
 mod command;
+mod drawing;
 mod errors;
 mod eval;
 mod examples;

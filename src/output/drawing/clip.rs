@@ -1,0 +1,205 @@
+//! Hidden lines by clipping every edge against every facet in front of it.
+//!
+//! A facet hides of an edge what lies within its picture and behind its plane. Its sides cut the line of the
+//! edge in an even number of places, between which the edge runs in and out; the plane cuts it once.
+
+use glam::DVec3;
+
+use super::{
+    cells::{Cells, Extent, Sieve},
+    field::Field,
+    lattice::{Plane, Scanline},
+    links::NONE,
+    model::{Edge, Facet, Model},
+    span::{Span, Step, spans},
+    strips::Strips,
+};
+
+/// The facets of a model, ready to be asked.
+pub struct Clipper<'a> {
+    model: &'a Model,
+    cells: Cells,
+    /// Facets of many sides, by strips.
+    strips: Vec<Option<Strips>>,
+}
+
+/// Facets of more sides than this are kept in strips.
+const MANY: usize = 64;
+
+/// Storage that is kept from edge to edge.
+pub struct Desk {
+    sieve: Sieve,
+    cuts: Vec<f64>,
+    steps: Vec<Step>,
+}
+
+impl<'a> Clipper<'a> {
+    /// Sorts the facets into a grid.
+    pub fn new(model: &'a Model) -> Clipper<'a> {
+        let extent = |i: usize| Extent::Box(model.facets[i].min, model.facets[i].max);
+        let strips = |f: &Facet| {
+            let sides = &model.sides[f.sides[0] as usize..f.sides[1] as usize];
+            (sides.len() > MANY).then(|| Strips::new(model, sides, f.min.y, f.max.y))
+        };
+        let strips = model.facets.iter().map(strips).collect();
+        Clipper { model, cells: Cells::new(model.facets.len(), extent), strips }
+    }
+
+    /// Storage for [`Clipper::hide`].
+    pub fn desk(&self) -> Desk {
+        Desk { sieve: Sieve::new(self.model.facets.len()), cuts: vec![], steps: vec![] }
+    }
+
+    /// Appends the spans of an edge.
+    pub fn hide(&self, edge: &Edge, desk: &mut Desk, out: &mut Vec<Span>) {
+        let [p, q] = [edge.a, edge.b].map(|i| self.model.at[i as usize]);
+        let line = Scanline::new(p, q);
+        let (min, max) = (p.min(q), p.max(q));
+        let Desk { sieve, cuts, steps } = desk;
+        steps.clear();
+        sieve.next_round();
+        self.cells.along(p, q, |i| {
+            let facet = &self.model.facets[i as usize];
+            let apart = facet.min.cmpgt(max) | min.cmpgt(facet.max);
+            if !apart.any() && sieve.passes(i) {
+                self.cut(edge, &line, facet, cuts, steps);
+            }
+        });
+        spans(steps, 0, self.model.dust / line.length(), out);
+    }
+
+    /// Adds the steps of one facet.
+    fn cut(
+        &self,
+        edge: &Edge,
+        line: &Scanline,
+        facet: &Facet,
+        cuts: &mut Vec<f64>,
+        steps: &mut Vec<Step>,
+    ) {
+        let Some((low, high)) = behind(self.model.heights(edge, &facet.plane)) else { return };
+        crossings(self.model, line, facet, cuts);
+        for pair in cuts.chunks_exact(2) {
+            let (from, to) = (pair[0].max(low), pair[1].min(high));
+            if from < to {
+                steps.extend([Step { at: from, by: 1 }, Step { at: to, by: -1 }]);
+            }
+        }
+    }
+
+    /// How many facets are in front of an edge at t; the edge runs along `line`. `on` is the true point there if the
+    /// edge is a chord.
+    pub fn order_at(&self, edge: &Edge, line: &Scanline, t: f64, on: Option<DVec3>) -> i32 {
+        let at = line.at(t);
+        let mut order = 0;
+        self.cells.at(at, |i| {
+            let facet = &self.model.facets[i as usize];
+            let apart = (facet.min - 1.0).cmpgt(at) | (at - 1.0).cmpgt(facet.max);
+            if !apart.any() {
+                let flat = facet.field == NONE;
+                if flat && !self.hides(facet, edge, t, on) {
+                    return;
+                }
+                let winding = match &self.strips[i as usize] {
+                    Some(strips) if on.is_some() => strips.winding(self.model, at),
+                    _ => self.winding(facet, line, t),
+                };
+                if winding != 0 && (flat || self.hides(facet, edge, t, on)) {
+                    order += winding;
+                }
+            }
+        });
+        order
+    }
+
+    /// How often a facet lies over the point of a line at t: once or not at all, unless it folds over itself; less than
+    /// not at all where its neighbours lie over each other instead.
+    fn winding(&self, facet: &Facet, line: &Scanline, t: f64) -> i32 {
+        let mut winding = 0;
+        for &[a, b] in &self.model.sides[facet.sides[0] as usize..facet.sides[1] as usize] {
+            let [a, b] = [a, b].map(|i| line.sighted(self.model.at[i as usize]));
+            if line.crossing(a, b).is_some_and(|c| c < t) {
+                winding += if a.side > 0.0 { 1 } else { -1 };
+            }
+        }
+        winding
+    }
+
+    /// Whether the surface of a facet is in front of an edge at t.
+    fn hides(&self, facet: &Facet, edge: &Edge, t: f64, on: Option<DVec3>) -> bool {
+        if facet.field == NONE && on.is_none() {
+            let [a, b] = self.model.heights(edge, &facet.plane);
+            return a + (b - a) * t < 0.0;
+        }
+        let p = on.unwrap_or_else(|| self.model.point_on(edge, t));
+        let Some(field) = self.model.fields.get(facet.field as usize) else {
+            return facet.plane.distance(p) < -self.model.contact;
+        };
+        let sight = self.model.camera.sight(p).normalize_or_zero();
+        let curve = self.model.curves.get(edge.curve as usize);
+        let radius = field.local(p).radius();
+        let own = curve.is_some_and(|c| c.is_contour_of(field));
+        let contact = if own { radius * OWN } else { self.model.bound };
+        ahead(field, &facet.plane, p, sight, radius / 2.0) > contact
+    }
+}
+
+/// On its own surface, what is nearer than this part of the radius does not hide a point of a contour, whose
+/// sight line touches the surface.
+const OWN: f64 = 1.0 / 256.0;
+
+/// Newton's steps along a sight line, at most.
+const STEPS: usize = 64;
+
+/// How far along a sight line from `p` it meets the part of a surface that a plane stands for, mm;
+/// steps are `reach` mm at most.
+fn ahead(field: &Field, plane: &Plane, p: DVec3, sight: DVec3, reach: f64) -> f64 {
+    let slope = plane.normal.dot(sight);
+    let guess = -plane.distance(p) / slope;
+    let mut s = if slope.abs() > 0.01 && guess.is_finite() { guess } else { 0.0 };
+    for _ in 0..STEPS {
+        let (value, normal) = field.slope(p + sight * s);
+        let step = (value / normal.dot(sight)).clamp(-reach, reach);
+        if step.is_nan() {
+            return s;
+        }
+        s -= step;
+        if step.abs() <= f64::EPSILON * (s.abs() + reach) {
+            break;
+        }
+    }
+    s
+}
+
+/// The part of an edge, within 0..1, that is behind a plane, from the heights of its ends.
+#[inline]
+pub fn behind([a, b]: [f64; 2]) -> Option<(f64, f64)> {
+    match (a < 0.0, b < 0.0) {
+        (false, false) => None,
+        (true, true) => Some((0.0, 1.0)),
+        (true, false) => Some((0.0, a / (a - b))),
+        (false, true) => Some((a / (a - b), 1.0)),
+    }
+}
+
+/// Where the sides of a facet cross a line, in order.
+#[inline]
+fn crossings(model: &Model, line: &Scanline, facet: &Facet, cuts: &mut Vec<f64>) {
+    cuts.clear();
+    let sides = &model.sides[facet.sides[0] as usize..facet.sides[1] as usize];
+    let mut end = u32::MAX;
+    let mut seen = line.sighted(model.at[sides[0][0] as usize]);
+    for &[a, b] in sides {
+        let before = if a == end { seen } else { line.sighted(model.at[a as usize]) };
+        seen = line.sighted(model.at[b as usize]);
+        end = b;
+        cuts.extend(line.crossing(before, seen));
+    }
+    if cuts.len() == 2 {
+        if cuts[0] > cuts[1] {
+            cuts.swap(0, 1);
+        }
+    } else {
+        cuts.sort_unstable_by(f64::total_cmp);
+    }
+}

@@ -1,0 +1,273 @@
+//! Hidden-line drawings: which lines of a scene an eye sees.
+//!
+//! A [`Scene`] of meshes is looked at through a [`Camera`]; [`visible_lines`] gives the [`Drawing`]: lines in
+//! millimetres on paper, each with its class, what it stands for and whose it is. Nothing here knows of
+//! files, pens or sheets.
+//!
+//! ```
+//! use glam::DVec3;
+//! use katachi::{kernel::brep::primitive::cuboid, output::drawing::{Camera, Options, Scene, View, visible_lines}};
+//! let cube = cuboid(DVec3::ZERO, DVec3::ONE);
+//! let drawing = visible_lines(&Scene::of([cube.mesh()]), &Camera::view(View::Iso), &Options::default());
+//! let edge = (2.0f64 / 3.0).sqrt();
+//! assert!((drawing.visible - 9.0 * edge).abs() < 1e-12);
+//! assert!((drawing.hidden - 3.0 * edge).abs() < 1e-12);
+//! ```
+//!
+//! # Paper
+//! T. Nishita, hidden lines of sets of polyhedra by the order of invisibility (METHODS, section 3).
+
+mod arcs;
+mod camera;
+mod cells;
+mod chain;
+mod clip;
+mod conic;
+mod convex;
+mod count;
+#[allow(clippy::module_inception, reason = "the noun is the file's")]
+mod drawing;
+mod field;
+mod fit;
+mod frustum;
+mod join;
+mod lattice;
+mod links;
+mod meet;
+mod merge;
+mod model;
+mod scene;
+mod smooth;
+mod span;
+mod strips;
+
+pub use camera::{Camera, CameraError, View, Window};
+pub use drawing::{Class, Drawing, Line, Path, Segment};
+pub use scene::{Body, Hidden, Kind, Method, Options, Scene, Stroke};
+
+use rayon::prelude::*;
+
+use arcs::ArcPiece;
+use clip::Clipper;
+use convex::Bodies;
+use count::Counter;
+use fit::{Fitted, Shape};
+use links::NONE;
+use merge::{Mark, Piece};
+use model::{Edge, Model};
+use span::Span;
+
+/// Lines coincide on paper when they are nearer than this part of the picture's size: corners that set
+/// operations rounded to 2^-29 of the size are a few times that apart.
+const COINCIDENT: f64 = 1e-8;
+
+/// The lines of a scene that an eye sees, and those it would see but for what is in front.
+///
+/// Never fails: what is behind the eye or outside the window is left out, and a scene without lines gives a
+/// drawing without lines. The same input gives the same drawing whatever the number of threads.
+pub fn visible_lines(scene: &Scene, camera: &Camera, options: &Options) -> Drawing {
+    let model = Model::new(scene, camera, options);
+    let mut sheet = Sheet::default();
+    hide(&model, options.method, &mut sheet);
+    if let Some(window) = camera.window() {
+        sheet.cut(&window);
+    }
+    sheet.assemble(model.picture_size() * COINCIDENT, options.hidden)
+}
+
+/// Lines before they are merged.
+#[derive(Default)]
+struct Sheet {
+    straight: Vec<Piece>,
+    arcs: Vec<ArcPiece>,
+    curves: Vec<(Path, Mark)>,
+}
+
+/// Puts all edges on the sheet.
+fn hide(model: &Model, method: Method, sheet: &mut Sheet) {
+    let bodies_only = model.hulls.last().is_some_and(|h| h.edges.end == model.edges.len());
+    if method == Method::Auto && bodies_only && model.hulls.iter().all(|h| h.convex) {
+        return hide_convex(model, sheet);
+    }
+    let clipper = Clipper::new(model);
+    let (mut desk, counter) = (clipper.desk(), Counter::new(model, &clipper));
+    let mut tally = counter.tally();
+    for hull in &model.hulls {
+        sheet.add_edges(model, hull.edges.clone(), |edge, out| {
+            if method == Method::Clip || hull.reached {
+                clipper.hide(edge, &mut desk, out);
+            } else {
+                counter.hide(edge, &mut tally, out);
+                debug_assert!(agree(model, edge, out, |edge, out| {
+                    clipper.hide(edge, &mut desk, out);
+                }));
+            }
+        });
+    }
+    let strokes = model.hulls.last().map_or(0, |h| h.edges.end)..model.edges.len();
+    sheet.add_edges(model, strokes, |edge, out| clipper.hide(edge, &mut desk, out));
+    hide_chains(model, &counter, sheet);
+}
+
+/// Puts the edges of convex bodies on the sheet.
+fn hide_convex(model: &Model, sheet: &mut Sheet) {
+    let bodies = Bodies::new(model);
+    let mut steps = vec![];
+    for (number, hull) in model.hulls.iter().enumerate() {
+        sheet.add_edges(model, hull.edges.clone(), |edge, out| {
+            bodies.hide(number, edge, &mut steps, out);
+        });
+    }
+}
+
+/// Whether another method finds as much of an edge visible. Where a true surface stands in for facets, the methods
+/// need not agree.
+fn agree(
+    model: &Model,
+    edge: &Edge,
+    spans: &[Span],
+    other: impl FnOnce(&Edge, &mut Vec<Span>),
+) -> bool {
+    let visible = |spans: &[Span]| -> f64 {
+        spans.iter().filter(|s| s.order == 0).map(|s| s.to - s.from).sum()
+    };
+    let mut found = vec![];
+    other(edge, &mut found);
+    let [p, q] = [edge.a, edge.b].map(|i| model.at[i as usize]);
+    let gap = (visible(spans) - visible(&found)).abs() * p.distance(q);
+    !model.fields.is_empty() || gap <= model.dust * DISPUTED
+}
+
+/// Two methods may differ by so many lengths of dust: where an edge lies in the plane of a face, one stops at the
+/// corner and the other at the border.
+const DISPUTED: f64 = 1e6;
+
+/// Puts curved edges on the sheet.
+fn hide_chains(model: &Model, counter: &Counter, sheet: &mut Sheet) {
+    let tolerance = model.picture_size() * COINCIDENT;
+    let chains = chain::chains(model);
+    let drawn = chains.par_iter().map_init(
+        || counter.tally(),
+        |tally, chain| {
+            let edge = &model.edges[chain[0].edge as usize];
+            let fitted = Fitted::new(model, chain, tolerance);
+            let mut shapes = vec![];
+            for stretch in counter.hide_chain(chain, tally) {
+                let mark = mark(edge, stretch.order);
+                fitted.shapes(&stretch, |shape| shapes.push((shape, mark)));
+            }
+            shapes
+        },
+    );
+    let drawn: Vec<Vec<(Shape, Mark)>> = drawn.collect();
+    drawn.into_iter().flatten().for_each(|(shape, mark)| sheet.add_shape(shape, mark));
+}
+
+/// How a part of an edge behind so many faces is drawn.
+fn mark(edge: &Edge, order: u32) -> Mark {
+    let class = match edge.kind {
+        Kind::Cutting => Class::Cutting,
+        Kind::Centre => Class::Centre,
+        _ if order == 0 => Class::Visible,
+        _ => Class::Hidden,
+    };
+    Mark { class, order, kind: edge.kind, id: edge.id }
+}
+
+impl Sheet {
+    /// Adds the straight edges of a range, hidden by `hide`.
+    fn add_edges(
+        &mut self,
+        model: &Model,
+        range: std::ops::Range<usize>,
+        mut hide: impl FnMut(&Edge, &mut Vec<Span>),
+    ) {
+        let mut spans = vec![];
+        for edge in &model.edges[range] {
+            if edge.curve == NONE && model.at[edge.a as usize] != model.at[edge.b as usize] {
+                spans.clear();
+                hide(edge, &mut spans);
+                self.add_spans(model, edge, &spans);
+            }
+        }
+    }
+
+    /// Adds the parts of a straight edge.
+    fn add_spans(&mut self, model: &Model, edge: &Edge, spans: &[Span]) {
+        let [p, q] = [edge.a, edge.b].map(|i| model.at[i as usize]);
+        let place = |t: f64| model.lattice.millimetres(p + (q - p) * t);
+        for span in spans {
+            let (from, to) = (place(span.from), place(span.to));
+            self.straight.push(Piece { from, to, mark: mark(edge, span.order) });
+        }
+    }
+
+    fn add_shape(&mut self, shape: Shape, mark: Mark) {
+        match shape {
+            Shape::Straight(from, to) => self.straight.push(Piece { from, to, mark }),
+            Shape::Arc(ellipse, from, to) => self.arcs.push(ArcPiece { ellipse, from, to, mark }),
+            Shape::Curve(path) => self.curves.push((path, mark)),
+        }
+    }
+
+    /// Cuts all lines off at the border of a window.
+    fn cut(&mut self, window: &Window) {
+        self.straight.retain_mut(|p| {
+            let Some((from, to)) = window.of_segment(p.from, p.to) else { return false };
+            (p.from, p.to) = (p.from.lerp(p.to, from), p.from.lerp(p.to, to));
+            true
+        });
+        for arc in std::mem::take(&mut self.arcs) {
+            let at = |t: f64| arc.from + (arc.to - arc.from) * t;
+            let parts = window.of_curve(|t| arc.ellipse.at(at(t)));
+            let part = |(from, to)| ArcPiece { from: at(from), to: at(to), ..arc };
+            self.arcs.extend(parts.into_iter().map(part));
+        }
+        for (path, mark) in std::mem::take(&mut self.curves) {
+            for (start, segment) in path.pieces() {
+                for (from, to) in window.of_curve(|t| segment.at(start, t)) {
+                    let (start, segment) = segment.part(start, from, to);
+                    self.curves.push((Path::of(start, segment), mark));
+                }
+            }
+        }
+    }
+
+    /// Merges what coincides within `tolerance` mm, measures, and keeps what is wanted, joined to paths.
+    fn assemble(self, tolerance: f64, hidden: Hidden) -> Drawing {
+        let straight = merge::merged(&self.straight, tolerance)
+            .into_iter()
+            .map(|p| (Path::of(p.from, Segment::Line { to: p.to }), p.mark));
+        let arcs = arcs::merged(&self.arcs, tolerance).into_iter().map(|a| {
+            let conic::Ellipse { center, major, minor } = a.ellipse;
+            let arc = Segment::Arc { center, major, minor, from: a.from, to: a.to };
+            (Path::of(a.ellipse.at(a.from), arc), a.mark)
+        });
+        let all: Vec<(Path, Mark)> = straight.chain(arcs).chain(self.curves).collect();
+        let length = |class: Class| {
+            let of = all.iter().filter(|(_, mark)| mark.class == class);
+            of.map(|(path, _)| path.length()).sum::<f64>()
+        };
+        let counted = all.iter().filter(|(_, mark)| mark.class <= Class::Hidden);
+        Drawing {
+            visible: length(Class::Visible),
+            hidden: length(Class::Hidden),
+            segments: counted.map(|(path, _)| path.segments.len()).sum(),
+            lines: join::joined(all, (tolerance / 8.0).max(f64::MIN_POSITIVE))
+                .into_iter()
+                .filter_map(|(path, mark)| line(path, mark, hidden))
+                .collect(),
+        }
+    }
+}
+
+/// The line that is drawn, if it is wanted.
+fn line(path: Path, mark: Mark, hidden: Hidden) -> Option<Line> {
+    let class = match (mark.class, hidden) {
+        (Class::Hidden, Hidden::Off) => return None,
+        (Class::Hidden, Hidden::Depth(most)) if mark.order <= most => Class::Visible,
+        (Class::Hidden, Hidden::Depth(_)) => return None,
+        (class, _) => class,
+    };
+    Some(Line { class, kind: mark.kind, id: mark.id, order: mark.order, path })
+}

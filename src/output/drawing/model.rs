@@ -1,0 +1,400 @@
+//! The scene as the eye has it: faces that hide, edges that may be drawn.
+
+use std::ops::Range;
+
+use glam::{DVec2, DVec3};
+
+use super::{
+    Camera,
+    cells::around,
+    field::{Curve, Field},
+    frustum::{Visible, before_eye},
+    lattice::{Lattice, Plane},
+    links::{self, Link, NONE, links},
+    scene::{Kind, Options, Scene, Stroke},
+    smooth,
+};
+use crate::geom::{Bounds, PolyMesh, Surface, bvh::Bvh};
+
+/// A point nearer than this part of the scene's size to a face's plane lies in it: set operations round
+/// points to 2^-29 of the size, and a plane through rounded points misses others by a few times that.
+const CONTACT: f64 = 1.0 / (1u64 << 26) as f64;
+
+/// Spans of edges shorter than this part of the picture are rounding: 64 lattice steps and more.
+const DUST: f64 = 1.0 / (1u64 << 38) as f64;
+
+/// Chords are this part of the modeller's tolerance off their curve at most.
+const CHORD: f64 = 0.25;
+
+/// Bodies of more faces are not treated as convex: asking grows with the square, and so does each comparison.
+const MOST_CONVEX: usize = 32;
+
+/// Faces whose unit normals differ by less than this meet smoothly: rounded corners turn a plane of a few
+/// percent of the scene's size by 1e-7.
+const FLAT: f64 = 1e-6;
+
+/// A face that hides what is behind it.
+#[derive(Clone, Copy, Debug)]
+pub struct Facet {
+    /// Its plane, in front towards the eye.
+    pub plane: Plane,
+    /// Its sides: a range of [`Model::sides`].
+    pub sides: [u32; 2],
+    /// Corners of its box on the lattice.
+    pub min: DVec2,
+    /// See `min`.
+    pub max: DVec2,
+    /// The true surface it stands for: a place in [`Model::fields`], or [`NONE`].
+    pub field: u32,
+}
+
+/// A line that is drawn where nothing hides it.
+#[derive(Clone, Copy, Debug)]
+pub struct Edge {
+    /// Its ends.
+    pub a: u32,
+    /// See `a`.
+    pub b: u32,
+    /// What it stands for.
+    pub kind: Kind,
+    /// The caller's number of its body or stroke.
+    pub id: u32,
+    /// The curve it is a chord of: a place in [`Model::curves`], or [`NONE`].
+    pub curve: u32,
+    /// Whether no face beside it is in front.
+    pub back: bool,
+}
+
+/// A body as ranges of the model's lists.
+#[derive(Clone, Debug)]
+pub struct Hull {
+    /// Its points.
+    pub points: Range<usize>,
+    /// Its facets.
+    pub facets: Range<usize>,
+    /// Its outlines.
+    pub outlines: Range<usize>,
+    /// Its edges.
+    pub edges: Range<usize>,
+    /// Corners of its picture's box on the lattice.
+    pub min: DVec2,
+    /// See `min`.
+    pub max: DVec2,
+    /// Whether it is a convex polyhedron.
+    pub convex: bool,
+    /// Whether its box reaches into that of another body.
+    pub reached: bool,
+}
+
+/// A side of a facet across which hiding begins or ends: not shared with another facet.
+#[derive(Clone, Copy, Debug)]
+pub struct Outline {
+    /// Its ends; the facet is on the left.
+    pub a: u32,
+    /// See `a`.
+    pub b: u32,
+    /// The facet.
+    pub facet: u32,
+    /// The curve it is a chord of: a place in [`Model::curves`], or [`NONE`].
+    pub curve: u32,
+}
+
+/// Points, hiding faces, lines to draw.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Points on the picture's lattice.
+    pub at: Vec<DVec2>,
+    /// The same points in space.
+    pub space: Vec<DVec3>,
+    /// Their magnification.
+    pub gain: Vec<f64>,
+    /// Faces that hide.
+    pub facets: Vec<Facet>,
+    /// Directed sides of facets.
+    pub sides: Vec<[u32; 2]>,
+    /// Where hiding begins and ends.
+    pub outlines: Vec<Outline>,
+    /// Lines to draw.
+    pub edges: Vec<Edge>,
+    /// The bodies.
+    pub hulls: Vec<Hull>,
+    /// True surfaces of facets.
+    pub fields: Vec<Field>,
+    /// True curves of edges and outlines.
+    pub curves: Vec<Curve>,
+    /// Points where a chain of chords is cut although it goes on: cusps of contours.
+    pub cusps: Vec<u32>,
+    /// The camera.
+    pub camera: Camera,
+    /// Picture to lattice.
+    pub lattice: Lattice,
+    /// Largest distance from a plane that is contact, mm.
+    pub contact: f64,
+    /// How far chords may be off their curve, mm.
+    pub bound: f64,
+    /// Largest length of a span that is dust, steps.
+    pub dust: f64,
+}
+
+/// What is known of the faces of one mesh.
+struct Faces {
+    /// Unit normals, outwards.
+    normals: Vec<DVec3>,
+    /// The sign of their picture's area: positive when they face the eye.
+    area: Vec<f64>,
+    /// The facet each became, or [`NONE`].
+    facet: Vec<u32>,
+}
+
+impl Model {
+    /// The model of what is before the eye.
+    pub fn new(scene: &Scene, camera: &Camera, options: &Options) -> Model {
+        let (bodies, strokes) = before_eye(scene, camera);
+        let mut model = Model::placed(&bodies, &strokes, camera, options);
+        let mut base = 0;
+        for body in &bodies {
+            let starts = [model.facets.len(), model.outlines.len(), model.edges.len()];
+            let smooth = smooth::add_body(&mut model, body, base, options);
+            let convex = !smooth && model.add_body(body, base, options);
+            let end = base + body.mesh.points.len() as u32;
+            model.add_hull(base as usize..end as usize, starts, convex);
+            base = end;
+        }
+        model.mark_reached();
+        for stroke in &strokes {
+            let corners = base..base + stroke.points.len() as u32;
+            for (a, b) in corners.clone().zip(corners.skip(1)) {
+                model.edges.push(Edge {
+                    a,
+                    b,
+                    kind: stroke.kind,
+                    id: stroke.id,
+                    curve: NONE,
+                    back: false,
+                });
+            }
+            base += stroke.points.len() as u32;
+        }
+        model
+    }
+
+    /// All points in space and on the lattice.
+    fn placed(bodies: &[Visible], strokes: &[Stroke], camera: &Camera, options: &Options) -> Model {
+        let corners = bodies.iter().flat_map(|b| &b.mesh.points);
+        let ends = strokes.iter().flat_map(|s| &s.points);
+        let before = |p: &DVec3| if camera.ahead(*p) < 0.0 { camera.target() } else { *p };
+        let space: Vec<DVec3> = corners.chain(ends).map(before).collect();
+        let images: Vec<(DVec2, f64)> = space.iter().map(|p| camera.image(*p)).collect();
+        let (min, max) = around(images.iter().map(|i| i.0));
+        let lattice = Lattice::around(min, max);
+        let size = space.iter().fold(0.0, |size: f64, p| size.max(p.abs().max_element()));
+        Model {
+            at: images.iter().map(|i| lattice.place(i.0)).collect(),
+            gain: images.iter().map(|i| i.1).collect(),
+            space,
+            facets: vec![],
+            sides: vec![],
+            outlines: vec![],
+            edges: vec![],
+            hulls: vec![],
+            fields: vec![],
+            curves: vec![],
+            cusps: vec![],
+            camera: *camera,
+            lattice,
+            contact: size * CONTACT,
+            bound: options.tolerance.mm() * CHORD,
+            dust: lattice.steps((max - min).max_element().max(0.0)) * DUST,
+        }
+    }
+
+    /// Notes what a body brought; `starts` are the lengths of facets, outlines and edges before it.
+    fn add_hull(&mut self, points: Range<usize>, starts: [usize; 3], convex: bool) {
+        let (min, max) = around(self.at[points.clone()].iter().copied());
+        let [facets, outlines, edges] = starts;
+        self.hulls.push(Hull {
+            points,
+            facets: facets..self.facets.len(),
+            outlines: outlines..self.outlines.len(),
+            edges: edges..self.edges.len(),
+            min,
+            max,
+            convex,
+            reached: false,
+        });
+    }
+
+    /// Marks bodies whose boxes reach into each other: their edges may run through faces.
+    fn mark_reached(&mut self) {
+        let boxes: Vec<Bounds> = self
+            .hulls
+            .iter()
+            .map(|h| Bounds::of(self.space[h.points.clone()].iter().copied()).grown(-self.contact))
+            .collect();
+        if boxes.len() > 1 {
+            Bvh::new(&boxes).self_pairs(|a, b| {
+                self.hulls[a as usize].reached = true;
+                self.hulls[b as usize].reached = true;
+            });
+        }
+    }
+
+    /// Adds a body whose facets stand for themselves; whether it is convex.
+    fn add_body(&mut self, body: &Visible, base: u32, options: &Options) -> bool {
+        let (mesh, id) = (&*body.mesh, body.id);
+        let links = links(mesh);
+        let open = links.iter().any(|l| l.right == NONE && !body.is_cut(l.a, l.b));
+        let faces = self.add_facets(mesh, base, open);
+        let crease = crate::geom::trig::cos_deg(options.crease);
+        for link in &links {
+            let kind = kind(mesh, link, &faces, crease);
+            if let Some(kind) = kind.filter(|_| !body.is_cut(link.a, link.b)) {
+                let (a, b) = (base + link.a, base + link.b);
+                let hides = |f: u32| f != NONE && faces.facet[f as usize] != NONE;
+                let back = !hides(link.left) && !hides(link.right);
+                self.edges.push(Edge { a, b, kind, id, curve: NONE, back });
+            }
+            self.add_outlines(link, base, &faces);
+        }
+        !open && body.cut as usize == mesh.points.len() && self.is_convex(mesh, &faces.normals)
+    }
+
+    /// Whether all points of a mesh are behind the planes of all its faces. Bodies of many faces are not asked.
+    fn is_convex(&self, mesh: &PolyMesh, normals: &[DVec3]) -> bool {
+        mesh.face_count() <= MOST_CONVEX
+            && mesh.faces().zip(normals).all(|(face, normal)| {
+                let offset = normal.dot(mesh.points[face.outer()[0] as usize]);
+                mesh.points.iter().all(|p| normal.dot(*p) - offset <= self.contact)
+            })
+    }
+
+    /// Makes facets of the faces towards the eye, or of both sides of an open surface.
+    fn add_facets(&mut self, mesh: &PolyMesh, base: u32, open: bool) -> Faces {
+        let count = mesh.face_count();
+        let mut faces = Faces {
+            normals: Vec::with_capacity(count),
+            area: Vec::with_capacity(count),
+            facet: Vec::with_capacity(count),
+        };
+        let mut area = vec![0.0; count];
+        links::each_side(mesh, |face, a, b| {
+            let (p, q) = (self.at[(base + a) as usize], self.at[(base + b) as usize]);
+            area[face as usize] += p.x * q.y - p.y * q.x;
+        });
+        for (face, area) in mesh.faces().zip(area) {
+            let normal = face.area_vector().normalize_or_zero();
+            let hides = area > 0.0 || open && area < 0.0;
+            faces.normals.push(normal);
+            faces.area.push(area);
+            faces.facet.push(if hides { self.facets.len() as u32 } else { NONE });
+            if hides {
+                self.add_facet(mesh, face.index(), base, normal * area.signum());
+            }
+        }
+        faces
+    }
+
+    fn add_facet(&mut self, mesh: &PolyMesh, face: usize, base: u32, normal: DVec3) {
+        let first = self.sides.len();
+        for corners in mesh.face(face).loops() {
+            let before = corners[corners.len() - 1];
+            corners.iter().fold(before, |before, &corner| {
+                self.sides.push([base + before, base + corner]);
+                corner
+            });
+        }
+        let corners = self.sides[first..].iter();
+        let (min, max) = around(corners.map(|s| self.at[s[1] as usize]));
+        let on = self.space[self.sides[first][0] as usize];
+        let plane = Plane { normal, offset: normal.dot(on) };
+        let sides = [first as u32, self.sides.len() as u32];
+        self.facets.push(Facet { plane, sides, min, max, field: NONE });
+    }
+
+    /// Adds a point.
+    pub fn add_point(&mut self, p: DVec3) -> u32 {
+        let (image, gain) = self.camera.image(p);
+        self.at.push(self.lattice.place(image));
+        self.gain.push(gain);
+        self.space.push(p);
+        self.at.len() as u32 - 1
+    }
+
+    /// Moves a point.
+    pub fn move_point(&mut self, point: u32, p: DVec3) {
+        let (image, gain) = self.camera.image(p);
+        let i = point as usize;
+        (self.at[i], self.gain[i], self.space[i]) = (self.lattice.place(image), gain, p);
+    }
+
+    /// An edge is an outline of the facets beside it, unless they go on into each other.
+    fn add_outlines(&mut self, link: &Link, base: u32, faces: &Faces) {
+        let area = |face: u32| if face == NONE { 0.0 } else { faces.area[face as usize] };
+        let facet = |face: u32| if face == NONE { NONE } else { faces.facet[face as usize] };
+        let (left, right) = (facet(link.left), facet(link.right));
+        if left != NONE && right != NONE && area(link.left) * area(link.right) > 0.0 {
+            return;
+        }
+        let (a, b) = (base + link.a, base + link.b);
+        for (face, facet, a, b) in [(link.left, left, a, b), (link.right, right, b, a)] {
+            if facet != NONE {
+                let (a, b) = if area(face) > 0.0 { (a, b) } else { (b, a) };
+                self.outlines.push(Outline { a, b, facet, curve: NONE });
+            }
+        }
+    }
+
+    /// The larger side of the picture, mm.
+    pub fn picture_size(&self) -> f64 {
+        let size = self.dust / DUST / self.lattice.steps(1.0);
+        let window = self.camera.window();
+        window.map_or(size, |w| size.min((w.max - w.min).max_element()))
+    }
+
+    /// The place in space, 0 to 1 along a straight edge, of the point at t in the picture.
+    pub fn place_in_space(&self, [a, b]: [u32; 2], t: f64) -> f64 {
+        let [k, l] = [self.gain[a as usize] * (1.0 - t), self.gain[b as usize] * t];
+        l / (k + l)
+    }
+
+    /// The point of a straight edge at t in the picture.
+    pub fn point_on(&self, edge: &Edge, t: f64) -> DVec3 {
+        let s = self.place_in_space([edge.a, edge.b], t);
+        self.space[edge.a as usize].lerp(self.space[edge.b as usize], s)
+    }
+
+    /// Height of an edge's ends over a plane, each times its magnification, so that it is linear along the
+    /// image; 0 in contact.
+    #[inline]
+    pub fn heights(&self, edge: &Edge, plane: &Plane) -> [f64; 2] {
+        [edge.a, edge.b].map(|p| {
+            let height = plane.distance(self.space[p as usize]);
+            if height.abs() <= self.contact { 0.0 } else { height * self.gain[p as usize] }
+        })
+    }
+}
+
+/// What an edge is drawn as; `None` when it only parts facets of one surface.
+fn kind(mesh: &PolyMesh, link: &Link, faces: &Faces, crease: f64) -> Option<Kind> {
+    if link.right == NONE {
+        return Some(Kind::Border);
+    }
+    let [left, right] = [link.left as usize, link.right as usize];
+    if (faces.area[left] > 0.0) != (faces.area[right] > 0.0) {
+        return Some(Kind::Contour);
+    }
+    let [one, other] = [left, right].map(|f| mesh.face(f));
+    if one.plane() == other.plane() {
+        return None;
+    }
+    let cosine = faces.normals[left].dot(faces.normals[right]);
+    let [s, t] = [one, other].map(|f| f.origin().surface);
+    let sharp = match (s, t) {
+        (Surface::Facets, _) | (_, Surface::Facets) => cosine < crease,
+        (Surface::Plane, Surface::Plane) => {
+            cosine <= 0.0 || faces.normals[left].cross(faces.normals[right]).length() > FLAT
+        }
+        _ => s != t,
+    };
+    sharp.then_some(Kind::Sharp)
+}

@@ -1,0 +1,75 @@
+//! How many faces are in front of a line, as a step function along it.
+
+/// A part of a line with the same number of faces in front of all of it.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Span {
+    /// Where it begins, 0 to 1.
+    pub from: f64,
+    /// Where it ends, 0 to 1.
+    pub to: f64,
+    /// Nishita's order of invisibility: front faces before it; 0 is visible.
+    pub order: u32,
+}
+
+/// A place where the order changes, and by how much.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Step {
+    /// Place along the line.
+    pub at: f64,
+    /// Change of the order.
+    pub by: i32,
+}
+
+/// The spans between steps in [0, 1], starting from an order. Spans shorter than `dust` are given to their
+/// neighbours: they are gaps of rounding between faces that share an edge.
+pub fn spans(steps: &mut [Step], start: i32, dust: f64, out: &mut Vec<Span>) {
+    steps.sort_unstable_by(|a, b| a.at.total_cmp(&b.at));
+    let first = out.len();
+    let (mut order, mut from) = (start, 0.0);
+    for step in steps.iter() {
+        if step.at - from > dust {
+            append(out, first, Span { from, to: step.at, order: order.max(0) as u32 });
+            from = step.at;
+        }
+        order += step.by;
+    }
+    if 1.0 - from > dust || out.len() == first {
+        append(out, first, Span { from, to: 1.0, order: order.max(0) as u32 });
+    } else {
+        out[first..].last_mut().expect("one was appended").to = 1.0;
+    }
+}
+
+/// Appends a span, or lengthens the last one from place `first` on when the order stays the same.
+fn append(out: &mut Vec<Span>, first: usize, span: Span) {
+    match out[first..].last_mut() {
+        Some(last) if last.order == span.order => last.to = span.to,
+        _ => out.push(span),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_become_spans_without_dust() {
+        let mut steps = [
+            Step { at: 0.5, by: -1 },
+            Step { at: 0.25, by: 1 },
+            Step { at: 0.5 + 1e-14, by: 1 },
+            Step { at: 0.75, by: -1 },
+        ];
+        let mut out = vec![];
+        spans(&mut steps, 0, 1e-12, &mut out);
+        let expected = [(0.0, 0.25, 0), (0.25, 0.75, 1), (0.75, 1.0, 0)];
+        assert_eq!(out.iter().map(|s| (s.from, s.to, s.order)).collect::<Vec<_>>(), expected);
+    }
+
+    #[test]
+    fn a_line_without_steps_is_one_span() {
+        let mut out = vec![];
+        spans(&mut [], 2, 1e-12, &mut out);
+        assert_eq!(out, [Span { from: 0.0, to: 1.0, order: 2 }]);
+    }
+}
