@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     base::{Code, Diagnostic, Span},
-    shape::ShapeId,
+    shape::{PageSpec, ShapeId, ViewSpec},
     syntax::ast::OutputKind,
 };
 
@@ -69,6 +69,27 @@ pub struct OutputInfo {
     pub span: Span,
     /// The text after `///`.
     pub doc: Option<Arc<str>>,
+}
+
+/// What an output is.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Product {
+    /// A solid or plane figure.
+    Shape(ShapeId),
+    /// A view.
+    View(Arc<ViewSpec>),
+    /// A page.
+    Sheet(Arc<PageSpec>),
+}
+
+impl Product {
+    /// The shape, if it is one.
+    pub fn shape(&self) -> Option<ShapeId> {
+        match self {
+            Product::Shape(shape) => Some(*shape),
+            _ => None,
+        }
+    }
 }
 
 /// An `export` of a file.
@@ -180,13 +201,13 @@ impl Evaluator<'_> {
 
     /// Evaluates one output; what goes wrong is recorded and does not touch other outputs.
     #[expect(clippy::result_unit_err, reason = "the reason is among the diagnostics")]
-    pub fn shape_of(&mut self, instance: InstanceId, output: &str) -> Result<ShapeId, ()> {
+    pub fn product_of(&mut self, instance: InstanceId, output: &str) -> Result<Product, ()> {
         self.steps_taken = 0;
-        let result = self.output_shape(instance, output);
+        let result = self.output_product(instance, output);
         result.map_err(|failure| self.report(&failure))
     }
 
-    fn output_shape(&mut self, instance: InstanceId, output: &str) -> Outcome<ShapeId> {
+    fn output_product(&mut self, instance: InstanceId, output: &str) -> Outcome<Product> {
         self.admitted(instance)?;
         let unit = self.unit_of(instance);
         let named = unit.globals.iter().position(|global| {
@@ -195,13 +216,16 @@ impl Evaluator<'_> {
         if let Some(number) = named {
             let at = unit.globals[number].name.span;
             let value = self.global(instance, number as u32, at)?;
-            return self.as_shape(&value, at)?.map_or_else(|| self.empty_solid(output, at), Ok);
+            return match self.as_product(&value, at)? {
+                Some(product) => Ok(product),
+                None => self.empty_solid(output, at).map(Product::Shape),
+            };
         }
         let anonymous = unit.globals.iter().enumerate();
         let anonymous = anonymous.filter(|(_, global)| global.kind == GlobalKind::Anonymous);
         let anonymous: Vec<u32> = anonymous.map(|(number, _)| number as u32).collect();
         if unit.stem() == output && !anonymous.is_empty() {
-            return self.anonymous_shape(instance, &unit, &anonymous);
+            return self.anonymous_shape(instance, &unit, &anonymous).map(Product::Shape);
         }
         let names: Vec<Arc<str>> =
             self.outputs(instance).into_iter().map(|info| info.name).collect();
@@ -212,6 +236,15 @@ impl Evaluator<'_> {
             None => error.note(format!("its outputs are {}", names.join(", "))),
         }
         .into())
+    }
+
+    /// What a value is as an output; `None` when it is none.
+    fn as_product(&mut self, value: &Value, at: Span) -> Outcome<Option<Product>> {
+        Ok(match value {
+            Value::Drawing(view) => Some(Product::View(view.clone())),
+            Value::Page(page) => Some(Product::Sheet(page.clone())),
+            value => self.as_shape(value, at)?.map(Product::Shape),
+        })
     }
 
     /// What an output is whose list holds no shape.
@@ -275,13 +308,13 @@ impl Evaluator<'_> {
         exports
     }
 
-    /// The named shapes that an export writes: one, or the fields of a record.
+    /// The named things that an export writes: one, or the fields of a record.
     #[expect(clippy::result_unit_err, reason = "the reason is among the diagnostics")]
-    pub fn export_shapes(
+    pub fn export_products(
         &mut self,
         instance: InstanceId,
         index: usize,
-    ) -> Result<Vec<(String, ShapeId)>, ()> {
+    ) -> Result<Vec<(String, Product)>, ()> {
         self.steps_taken = 0;
         let result = self.export_parts(instance, index);
         result.map_err(|failure| self.report(&failure))
@@ -291,7 +324,7 @@ impl Evaluator<'_> {
         &mut self,
         instance: InstanceId,
         index: usize,
-    ) -> Outcome<Vec<(String, ShapeId)>> {
+    ) -> Outcome<Vec<(String, Product)>> {
         self.admitted(instance)?;
         let unit = self.unit_of(instance);
         let export = unit.exports.get(index).ok_or(Failure::TOLD)?;
@@ -301,11 +334,11 @@ impl Evaluator<'_> {
         let file = self.eval_in(instance, export.file, global.frame)?.to_string();
         if let Value::Record(record) = &value {
             if record.fields().is_empty() {
-                return fail(Code::WrongKind, at, "an export needs a shape, got an empty record");
+                return fail(Code::WrongKind, at, "an export needs something to write, got an empty record");
             }
             let mut parts = vec![];
             for (name, value) in record.fields() {
-                parts.push((name.to_string(), self.export_shape(value, at, name)?));
+                parts.push((name.to_string(), self.export_product(value, at, name)?));
             }
             return Ok(parts);
         }
@@ -315,14 +348,14 @@ impl Evaluator<'_> {
             }
             _ => file_stem(&file),
         };
-        Ok(vec![(name.clone(), self.export_shape(&value, at, &name)?)])
+        Ok(vec![(name.clone(), self.export_product(&value, at, &name)?)])
     }
 
-    fn export_shape(&mut self, value: &Value, at: Span, name: &str) -> Outcome<ShapeId> {
-        match self.as_shape(value, at)? {
-            Some(shape) => Ok(shape),
+    fn export_product(&mut self, value: &Value, at: Span, name: &str) -> Outcome<Product> {
+        match self.as_product(value, at)? {
+            Some(product) => Ok(product),
             None => {
-                let words = format!("an export needs a shape for `{name}`, got {}", shown(value));
+                let words = format!("an export needs a shape, drawing or page for `{name}`, got {}", shown(value));
                 fail(Code::WrongKind, at, words)
             }
         }
