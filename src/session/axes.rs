@@ -37,7 +37,10 @@ struct Axis {
 
 /// The centre lines of all meshes, in an order that depends on the places of the axes alone: a line along each axis,
 /// or a cross where the camera looks along it.
-pub fn center_lines(meshes: &[&PolyMesh], camera: &Camera) -> Vec<[DVec3; 2]> {
+pub fn center_lines<'a>(
+    meshes: impl Iterator<Item = &'a PolyMesh>,
+    camera: &Camera,
+) -> Vec<[DVec3; 2]> {
     let mut axes: BTreeMap<[i64; 6], Axis> = BTreeMap::new();
     for mesh in meshes {
         for face in mesh.faces() {
@@ -117,10 +120,10 @@ mod tests {
     #[test]
     fn a_cylinder_has_an_axis_or_a_cross() {
         let pin = primitive::cone(5.0, 5.0, 20.0, 32);
-        let lines = |view| center_lines(&[pin.mesh()], &Camera::view(view));
+        let lines = |view| center_lines([pin.mesh()].into_iter(), &Camera::view(view));
         assert_eq!(lines(View::Front), [[DVec3::Z * -3.0, DVec3::Z * 23.0]]);
         assert_eq!(lines(View::Top).len(), 2);
         let cuboid = primitive::cuboid(DVec3::ZERO, DVec3::ONE);
-        assert!(center_lines(&[cuboid.mesh()], &Camera::view(View::Top)).is_empty());
+        assert!(center_lines([cuboid.mesh()].into_iter(), &Camera::view(View::Top)).is_empty());
     }
 }

@@ -76,6 +76,11 @@ impl<'a> Drafter<'a> {
         }
         let camera = camera(view).map_err(|error| refused(&error, view.place.0))?;
         during(self.watch, Phase::Drawings, || {
+            // Holes keep their centre lines when the cut takes half of them.
+            let axes = match view.center_lines {
+                true => axes::center_lines(solids.iter().map(|solid| solid.mesh()), &camera),
+                false => vec![],
+            };
             let mut cuts = vec![];
             if let Some(plane) = &view.section {
                 let cut = cut::cut(&mut solids, plane, &camera, self.realizer.tolerance());
@@ -85,7 +90,7 @@ impl<'a> Drafter<'a> {
                 }
             }
             let meshes: Vec<&PolyMesh> = solids.iter().map(|solid| solid.mesh()).collect();
-            let drawing = self.lines(view, &meshes, &camera);
+            let drawing = self.lines(view, &meshes, &axes, &camera);
             warnings.extend(blank(&drawing, view, &meshes));
             let dimensions = view.dims.iter().map(|dim| dimension(dim, view, &camera));
             let dimensions = dimensions.collect::<Result<_, _>>()?;
@@ -95,7 +100,13 @@ impl<'a> Drafter<'a> {
         })
     }
 
-    fn lines(&self, view: &ViewSpec, meshes: &[&PolyMesh], camera: &Camera) -> Drawing {
+    fn lines(
+        &self,
+        view: &ViewSpec,
+        meshes: &[&PolyMesh],
+        axes: &[[DVec3; 2]],
+        camera: &Camera,
+    ) -> Drawing {
         let bodies = meshes.iter().zip(0..).map(|(mesh, id)| Body { mesh, id }).collect();
         let tolerance = self.realizer.tolerance();
         let mut strokes: Vec<Stroke> = vec![];
@@ -106,11 +117,7 @@ impl<'a> Drafter<'a> {
         for curve in &view.curves {
             add(points_of(curve, tolerance), Kind::Free);
         }
-        if view.center_lines {
-            for line in axes::center_lines(meshes, camera) {
-                add(line.to_vec(), Kind::Centre);
-            }
-        }
+        axes.iter().for_each(|line| add(line.to_vec(), Kind::Centre));
         let hidden = match view.hidden {
             Hidden::Off => drawing::Hidden::Off,
             Hidden::Dashed => drawing::Hidden::Dashed,

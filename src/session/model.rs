@@ -1,6 +1,6 @@
 //! An evaluated file: its outputs, exports, parameters and tests.
 
-use std::sync::Arc;
+use std::{path::Path, sync::Arc};
 
 use glam::DVec3;
 
@@ -143,7 +143,8 @@ impl<'s> Model<'s> {
             match drafter.draw(view) {
                 Ok(drawn) => {
                     let drawing = &drawn.figure.drawing;
-                    let (visible, hidden) = (drawing.visible, drawing.hidden);
+                    // A sum of nothing is negative zero.
+                    let (visible, hidden) = (drawing.visible + 0.0, drawing.hidden + 0.0);
                     let lines = Lines { visible, hidden, segments: drawing.segments };
                     measured.views.push((paper.name.clone(), lines));
                     measured.diagnostics.extend(drawn.warnings.clone());
@@ -169,8 +170,9 @@ impl<'s> Model<'s> {
     ) -> Option<Artifact> {
         let (parts, _) = self.products(names, diagnostics);
         diagnostics.extend(self.check(names));
-        let first = parts.first()?;
-        let (name, span) = (first.name.clone(), first.span);
+        let span = parts.first()?.span;
+        let stem = Path::new(file).file_stem().unwrap_or_default();
+        let name = stem.to_string_lossy().into_owned();
         let view = ViewSpec {
             shapes: parts.iter().map(|part| part.shape).collect(),
             curves: vec![],

@@ -124,7 +124,7 @@ fn place(
         Position::At(_) if args.given(scale) => Some(args.positive(scale)?),
         _ => None,
     };
-    let place = Place(evaluator.shown_at(args.call));
+    let place = Place(evaluator.shown_at(args.span(1)));
     changed(args, |page| page.views.push(Placed { view, position, scale, place }))
 }
 
