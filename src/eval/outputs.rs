@@ -334,7 +334,11 @@ impl Evaluator<'_> {
         let file = self.eval_in(instance, export.file, global.frame)?.to_string();
         if let Value::Record(record) = &value {
             if record.fields().is_empty() {
-                return fail(Code::WrongKind, at, "an export needs something to write, got an empty record");
+                return fail(
+                    Code::WrongKind,
+                    at,
+                    "an export needs something to write, got an empty record",
+                );
             }
             let mut parts = vec![];
             for (name, value) in record.fields() {
@@ -355,7 +359,10 @@ impl Evaluator<'_> {
         match self.as_product(value, at)? {
             Some(product) => Ok(product),
             None => {
-                let words = format!("an export needs a shape, drawing or page for `{name}`, got {}", shown(value));
+                let words = format!(
+                    "an export needs a shape, drawing or page for `{name}`, got {}",
+                    shown(value)
+                );
                 fail(Code::WrongKind, at, words)
             }
         }

@@ -60,8 +60,8 @@ pub enum Type {
 
 const NAMES: &[&str] = &[
     "Any", "Number", "Length", "Angle", "Area", "Volume", "Quantity", "Count", "Bool", "String",
-    "List", "Record", "Range", "Function", "Solid", "Profile", "Shape", "Curve", "Drawing",
-    "Page", "Optional", "Point", "Vector",
+    "List", "Record", "Range", "Function", "Solid", "Profile", "Shape", "Curve", "Drawing", "Page",
+    "Optional", "Point", "Vector",
 ];
 
 /// Why a value does not fit.

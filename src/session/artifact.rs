@@ -237,11 +237,7 @@ impl Artifact {
 }
 
 /// A drawing or page with its ink. All reasons but the first why a page cannot be made are added to `said`.
-fn drawn(
-    drafter: &Drafter,
-    paper: &Paper,
-    said: &mut Vec<Diagnostic>,
-) -> Result<Page, Diagnostic> {
+fn drawn(drafter: &Drafter, paper: &Paper, said: &mut Vec<Diagnostic>) -> Result<Page, Diagnostic> {
     match &paper.kind {
         PaperKind::View(view) => {
             let drawn = drafter.draw(view)?;

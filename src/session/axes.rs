@@ -45,7 +45,8 @@ pub fn center_lines<'a>(
     for mesh in meshes {
         for face in mesh.faces() {
             let Some((point, direction)) = axis_of(&face.origin().surface) else { continue };
-            let axis = axes.entry(key(point, direction)).or_insert_with(|| Axis::new(point, direction));
+            let axis =
+                axes.entry(key(point, direction)).or_insert_with(|| Axis::new(point, direction));
             let corners = face.loops().flatten();
             corners.for_each(|&corner| axis.take(mesh.points[corner as usize]));
         }

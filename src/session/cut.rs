@@ -76,10 +76,8 @@ fn block(mesh: &PolyMesh, at: DVec3, normal: DVec3, height: f64) -> Tree {
     let (center, size) = extent(mesh);
     let half = size * CLEARANCE;
     let foot = center - normal * (center - at).dot(normal);
-    let cuboid = cuboid(
-        DVec3::new(-half, -half, 0.0),
-        DVec3::new(half, half, height * CLEARANCE + size),
-    );
+    let cuboid =
+        cuboid(DVec3::new(-half, -half, 0.0), DVec3::new(half, half, height * CLEARANCE + size));
     let marked = cuboid.mesh().clone().with_origins(|origin| origin.tags.push(MARK.into()));
     // Along an axis of the model the frame is exact, and so is the cut.
     let aside = if normal.x.abs() < 0.5 { DVec3::X } else { DVec3::Y };

@@ -35,12 +35,15 @@ pub struct Drawn {
     pub warnings: Vec<Diagnostic>,
 }
 
+/// What became of a view.
+type Outcome = Result<Arc<Drawn>, Diagnostic>;
+
 /// Draws views of the shapes of one graph; each view once.
 pub struct Drafter<'a> {
     realizer: &'a Realizer<'a>,
     graph: &'a ShapeGraph,
     watch: &'a dyn Watch,
-    drawn: RefCell<Vec<(Arc<ViewSpec>, Result<Arc<Drawn>, Diagnostic>)>>,
+    drawn: RefCell<Vec<(Arc<ViewSpec>, Outcome)>>,
 }
 
 impl<'a> Drafter<'a> {
@@ -50,7 +53,7 @@ impl<'a> Drafter<'a> {
 
     /// The drawing of a view. Fails with the diagnostic of a shape that cannot be made, or of a dimension that the
     /// view does not show.
-    pub fn draw(&self, view: &Arc<ViewSpec>) -> Result<Arc<Drawn>, Diagnostic> {
+    pub fn draw(&self, view: &Arc<ViewSpec>) -> Outcome {
         let known = |(other, _): &&(Arc<ViewSpec>, _)| Arc::ptr_eq(other, view) || other == view;
         if let Some((_, drawn)) = self.drawn.borrow().iter().find(known) {
             return drawn.clone();
@@ -238,8 +241,8 @@ fn blank(drawing: &Drawing, view: &ViewSpec, meshes: &[&PolyMesh]) -> Option<Dia
     let (min, max) = points().fold((first, first), |(a, b), &p| (a.min(p), b.max(p)));
     let corner = |p: DVec3| format!("[{}, {}, {}]", short(p.x), short(p.y), short(p.z));
     let words = "the view shows nothing: nothing of its shapes is in the window";
-    let noted = warning(words)
-        .note(format!("the shapes lie in {} to {}", corner(min), corner(max)));
+    let noted =
+        warning(words).note(format!("the shapes lie in {} to {}", corner(min), corner(max)));
     Some(match view.window {
         Some([min, max]) => noted.note(format!(
             "the window is [{}, {}] to [{}, {}] on paper",
@@ -289,7 +292,8 @@ fn layer(name: PenName) -> Layer {
 /// A dimension on paper. Fails for points that the view does not show apart.
 fn dimension(spec: &DimSpec, view: &ViewSpec, camera: &Camera) -> Result<Dimension, Diagnostic> {
     let image = |p: DVec3| {
-        let behind = || at(Code::OutOfRange, "the dimension has a point behind the eye", spec.place.0);
+        let behind =
+            || at(Code::OutOfRange, "the dimension has a point behind the eye", spec.place.0);
         camera.project(p).ok_or_else(behind)
     };
     let (shape, values) = match &spec.measured {
@@ -301,7 +305,8 @@ fn dimension(spec: &DimSpec, view: &ViewSpec, camera: &Camera) -> Result<Dimensi
                 None => ends.1 - ends.0,
             };
             let Some(unit) = way.try_normalize() else {
-                let words = "the dimension has no length in this view: its direction is that of sight";
+                let words =
+                    "the dimension has no length in this view: its direction is that of sight";
                 return Err(at(Code::Degenerate, words, spec.place.0));
             };
             let values = lengths(points, &images, *along, unit, view);

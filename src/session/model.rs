@@ -215,7 +215,11 @@ impl<'s> Model<'s> {
         let of_paper = format.filter(|format| format.is_drawing()).unwrap_or(Format::SVG);
         for part in parts.into_iter().filter(|part| !exported.contains(&part.shape)) {
             let file = format!("{}.{}", part.name, of_parts.extension());
-            artifacts.push(Artifact { file, format: of_parts, content: Content::Solids(vec![part]) });
+            artifacts.push(Artifact {
+                file,
+                format: of_parts,
+                content: Content::Solids(vec![part]),
+            });
         }
         for paper in papers.into_iter().filter(|paper| !on_paper.contains(&paper.kind)) {
             let file = format!("{}.{}", paper.name, of_paper.extension());
@@ -411,7 +415,9 @@ fn paper_kind(product: &Product) -> Result<PaperKind, ShapeId> {
 /// The error for an export whose format does not hold what it is given.
 fn unsuited(name: &str, format: Format, export: &ExportInfo) -> Diagnostic {
     let (kind, help) = match format.is_drawing() {
-        true => ("solid", format!("draw it: `export \"x.{}\" = {name}.view()`", format.extension())),
+        true => {
+            ("solid", format!("draw it: `export \"x.{}\" = {name}.view()`", format.extension()))
+        }
         false => ("drawing", "drawings are written as .svg, .pdf or .dxf".to_string()),
     };
     let words = format!("a {kind} cannot be written as .{}", format.extension());

@@ -60,10 +60,13 @@ fn block(title: &TitleSpec, spec: &PageSpec) -> Title {
     let mut fields: Vec<(String, String)> =
         title.fields.iter().map(|(name, text)| (name.to_string(), text.to_string())).collect();
     fields.push(("scale".into(), scale_text(spec.scale)));
-    fields.push(("size".into(), match &spec.name {
-        Some(name) => name.to_string(),
-        None => format!("{} x {}", spec.size.x, spec.size.y),
-    }));
+    fields.push((
+        "size".into(),
+        match &spec.name {
+            Some(name) => name.to_string(),
+            None => format!("{} x {}", spec.size.x, spec.size.y),
+        },
+    ));
     Title { title: title.title.to_string(), fields }
 }
 

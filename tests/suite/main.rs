@@ -16,4 +16,5 @@ mod readers;
 mod readme;
 mod regressions;
 mod scad;
+mod sheets;
 mod sources;

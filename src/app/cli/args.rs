@@ -143,7 +143,7 @@ pub struct View {
     /// Only this part (may be repeated)
     #[arg(short, long = "part", value_name = "NAME")]
     pub part: Vec<String>,
-    /// FRONT BACK LEFT RIGHT TOP BOTTOM ISO DIMETRIC or X,Y,Z
+    /// A side such as TOP, or X,Y,Z towards the eye
     #[arg(long, value_name = "SIDE", default_value = "ISO", allow_hyphen_values = true)]
     pub from: String,
     /// Perspective from here in place of --from
@@ -155,7 +155,7 @@ pub struct View {
     /// Hidden lines: off, dashed or depth:K
     #[arg(long, value_name = "HOW", default_value = "off")]
     pub hidden: String,
-    /// File to write: .svg, .pdf or .dxf [default: out/<model>.svg]
+    /// The .svg, .pdf or .dxf [default: out/MODEL.svg]
     #[arg(short, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// How.

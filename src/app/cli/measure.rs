@@ -68,7 +68,9 @@ fn lines_object(lines: &Lines) -> Value {
 fn lines_table(name: &str, lines: &Lines) -> String {
     let (visible, hidden) = (short(lines.visible), short(lines.hidden));
     let segments = lines.segments;
-    format!("{name}\n  visible    {visible} mm\n  hidden     {hidden} mm\n  segments   {segments}\n")
+    format!(
+        "{name}\n  visible    {visible} mm\n  hidden     {hidden} mm\n  segments   {segments}\n"
+    )
 }
 
 /// Measures for people.

@@ -51,7 +51,8 @@ pub fn run(arguments: &View, style: Style) -> io::Result<Exit> {
 fn target(arguments: &View) -> Result<(String, Format), String> {
     let Some(path) = &arguments.output else {
         let stem = Path::new(&arguments.model.file).file_stem().unwrap_or_default();
-        let stem = if arguments.model.file == "-" { "stdin".into() } else { stem.to_string_lossy() };
+        let stem =
+            if arguments.model.file == "-" { "stdin".into() } else { stem.to_string_lossy() };
         return Ok((format!("out/{stem}.svg"), Format::SVG));
     };
     let path = path.to_string_lossy().into_owned();
@@ -111,8 +112,7 @@ fn hidden(text: &str) -> Result<Hidden, String> {
 
 /// Three finite numbers with commas between them, millimetres.
 fn point(text: &str) -> Result<DVec3, String> {
-    let numbers: Vec<f64> =
-        text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
+    let numbers: Vec<f64> = text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
     match numbers[..] {
         [x, y, z] if text.split(',').count() == 3 && [x, y, z].iter().all(|c| c.is_finite()) => {
             Ok(DVec3::new(x, y, z))

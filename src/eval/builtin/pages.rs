@@ -45,8 +45,7 @@ fn page(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
         Value::Symbol(Symbol::FirstAngle) => true,
         Value::Symbol(Symbol::ThirdAngle) => false,
         other => {
-            let words =
-                format!("`projection` is FIRST_ANGLE or THIRD_ANGLE, got {}", shown(other));
+            let words = format!("`projection` is FIRST_ANGLE or THIRD_ANGLE, got {}", shown(other));
             return args.fail(3, Code::WrongKind, words);
         }
     };
@@ -113,12 +112,7 @@ fn place_beside(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
     place(evaluator, args, Position::Beside { other, gap: args.not_negative(3)? }, 4)
 }
 
-fn place(
-    evaluator: &Evaluator,
-    args: &Args,
-    position: Position,
-    scale: usize,
-) -> Outcome<Value> {
+fn place(evaluator: &Evaluator, args: &Args, position: Position, scale: usize) -> Outcome<Value> {
     let view = drawing(args, 1)?.clone();
     let scale = match position {
         Position::At(_) if args.given(scale) => Some(args.positive(scale)?),

@@ -73,7 +73,8 @@ fn subjects(
             other => {
                 let words = format!("a view needs solids and curves, got {}", shown(&other));
                 let error = Diagnostic::error(Code::WrongKind, words).label(args.span(0), "");
-                let flat = other.shape().is_some_and(|s| evaluator.graph().kind(s) == Kind::Profile);
+                let flat =
+                    other.shape().is_some_and(|s| evaluator.graph().kind(s) == Kind::Profile);
                 let help = "make a solid of it with `.extrude(h)`";
                 return Err(if flat { error.help(help) } else { error }.into());
             }
@@ -135,7 +136,8 @@ fn perspective(args: &Args, target: DVec3) -> Outcome<Projection> {
     }
     let fov = if args.given(4) { Some(args.number(4)?) } else { None };
     if let Some(fov) = fov.filter(|fov| !(*fov > 0.0 && *fov < 180.0)) {
-        let words = format!("the field of view is {fov}deg; it must be above 0deg and below 180deg");
+        let words =
+            format!("the field of view is {fov}deg; it must be above 0deg and below 180deg");
         return args.fail(4, Code::OutOfRange, words);
     }
     if fov.is_some() && args.given(5) {
@@ -403,14 +405,13 @@ fn dim_chain(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
     linear(evaluator, args, items.iter().filter_map(coordinates).collect(), 2)
 }
 
-fn linear(
-    evaluator: &Evaluator,
-    args: &Args,
-    points: Vec<DVec3>,
-    offset: usize,
-) -> Outcome<Value> {
+fn linear(evaluator: &Evaluator, args: &Args, points: Vec<DVec3>, offset: usize) -> Outcome<Value> {
     if points.len() < 2 || points.windows(2).any(|pair| pair[0] == pair[1]) {
-        return fail(Code::Degenerate, args.span(offset - 1), "a dimension needs points that differ");
+        return fail(
+            Code::Degenerate,
+            args.span(offset - 1),
+            "a dimension needs points that differ",
+        );
     }
     let along = if args.given(offset + 1) { Some(args.point(offset + 1)?) } else { None };
     if along == Some(DVec3::ZERO) {

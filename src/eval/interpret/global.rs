@@ -151,9 +151,9 @@ impl Evaluator<'_> {
         let error = Diagnostic::error(base::Code::WrongKind, words).label(at, "");
         match (kind, &value) {
             (OutputKind::View, Value::Page(_)) => Err(error.help("a page is a `sheet`").into()),
-            (OutputKind::Sheet, Value::Drawing(_)) => {
-                Err(error.help("put it on a page: `page(A4).place(drawing, at = [105, 148])`").into())
-            }
+            (OutputKind::Sheet, Value::Drawing(_)) => Err(error
+                .help("put it on a page: `page(A4).place(drawing, at = [105, 148])`")
+                .into()),
             (OutputKind::Part, Value::Profile(_)) => {
                 Err(error.help("make a solid of it with `.extrude(h)`").into())
             }

@@ -125,7 +125,8 @@ pub fn arrange(
 ) -> (Page, Vec<Misfit>) {
     let mut misfits = vec![];
     let mut groups = vec![];
-    let area = if sheet.frame { frame::drawing_area(sheet.size) } else { Some((DVec2::ZERO, sheet.size)) };
+    let area =
+        if sheet.frame { frame::drawing_area(sheet.size) } else { Some((DVec2::ZERO, sheet.size)) };
     let Some(area) = area else {
         let page = Page { size: sheet.size, title: sheet.name.clone(), groups };
         return (page, vec![Misfit::NoRoom(sheet.size)]);
@@ -260,8 +261,11 @@ const ROUNDING: f64 = 1e-6;
 
 fn on_title(view: usize, found: &Standing, block: (DVec2, DVec2)) -> Option<Misfit> {
     let common = found.max.min(block.1) - found.min.max(block.0);
-    (common.min_element() > ROUNDING)
-        .then_some(Misfit::OnTitle { view, width: common.x, height: common.y })
+    (common.min_element() > ROUNDING).then_some(Misfit::OnTitle {
+        view,
+        width: common.x,
+        height: common.y,
+    })
 }
 
 #[cfg(test)]
@@ -312,7 +316,11 @@ mod tests {
         let (_, misfits) = arrange(&sheet(true), &views, &Unlettered);
         let told = Misfit::Overflow { view: 0, area: "frame", side: "right", by: 10.0 };
         assert_eq!(misfits, [told]);
-        let iso = Placing { direction: None, spot: Spot::Beside { other: 0, gap: 5.0 }, ..views[0].clone() };
+        let iso = Placing {
+            direction: None,
+            spot: Spot::Beside { other: 0, gap: 5.0 },
+            ..views[0].clone()
+        };
         let (_, misfits) = arrange(&sheet(true), &[views[0].clone(), iso], &Unlettered);
         assert_eq!(misfits[1], Misfit::NotBeside { view: 1 });
     }

@@ -211,8 +211,7 @@ impl File {
         self.layer(0x10, "0", "Continuous", None);
         for (layer, pen) in layers {
             let handle = self.next();
-            let dashes =
-                if pen.dash.is_empty() { "Continuous".into() } else { type_name(*layer) };
+            let dashes = if pen.dash.is_empty() { "Continuous".into() } else { type_name(*layer) };
             self.layer(handle, layer.name(), &dashes, Some(pen));
         }
         self.pair(0, "ENDTAB");

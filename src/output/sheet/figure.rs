@@ -85,8 +85,7 @@ impl Figure {
         let (min, max) = bounds(&inks).unwrap_or_default();
         let offset = DVec2::splat(MARGIN) - min;
         let inks = inks.iter().map(|ink| moved(ink, offset)).collect();
-        let group =
-            Group { name: title.into(), data: vec![], style: self.style.clone(), inks };
+        let group = Group { name: title.into(), data: vec![], style: self.style.clone(), inks };
         Page { size: max - min + 2.0 * MARGIN, title: title.into(), groups: vec![group] }
     }
 }

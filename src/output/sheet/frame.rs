@@ -43,7 +43,7 @@ pub fn drawing_area(size: DVec2) -> Option<(DVec2, DVec2)> {
     (max - min).cmpgt(DVec2::ZERO).all().then_some((min, max))
 }
 
-/// The frame around the drawing area with centring marks.
+/// The frame around the drawing area with centring marks; the lower one stays outside, where a title block may stand.
 pub fn frame((min, max): (DVec2, DVec2), size: DVec2) -> Vec<Ink> {
     let middle = size / 2.0;
     let mark = |from: DVec2, to: DVec2| Ink::stroke(Layer::Frame, from, to);
@@ -51,7 +51,7 @@ pub fn frame((min, max): (DVec2, DVec2), size: DVec2) -> Vec<Ink> {
         Ink::rectangle(Layer::Frame, min, max),
         mark(dvec2(min.x - CENTRING, middle.y), dvec2(min.x + CENTRING, middle.y)),
         mark(dvec2(max.x + CENTRING, middle.y), dvec2(max.x - CENTRING, middle.y)),
-        mark(dvec2(middle.x, min.y - CENTRING), dvec2(middle.x, min.y + CENTRING)),
+        mark(dvec2(middle.x, min.y - CENTRING), dvec2(middle.x, min.y)),
         mark(dvec2(middle.x, max.y + CENTRING), dvec2(middle.x, max.y - CENTRING)),
     ]
 }
@@ -119,7 +119,9 @@ fn symbol(center: DVec2, first_angle: bool) -> Vec<Ink> {
         let arc = Segment::Arc { center: eye, major, minor, from: 0.0, to: TAU };
         inks.push(Ink::line(Layer::Title, Path::of(eye + major, arc)));
     }
-    let across = |c: DVec2, reach: f64| Ink::stroke(Layer::Center, c - dvec2(reach, 0.0), c + dvec2(reach, 0.0));
+    let across = |c: DVec2, reach: f64| {
+        Ink::stroke(Layer::Center, c - dvec2(reach, 0.0), c + dvec2(reach, 0.0))
+    };
     inks.push(across(cone, 5.5));
     inks.push(across(eye, 5.5));
     inks.push(Ink::stroke(Layer::Center, eye - dvec2(0.0, 5.5), eye + dvec2(0.0, 5.5)));

@@ -84,7 +84,8 @@ mod tests {
 
     #[test]
     fn lines_cover_the_area_and_spare_the_hole() {
-        let cut = Cut { rings: vec![square(0.0, 100.0), square(40.0, 60.0)], body: 0, tolerance: 0.0 };
+        let cut =
+            Cut { rings: vec![square(0.0, 100.0), square(40.0, 60.0)], body: 0, tolerance: 0.0 };
         let length: f64 = hatched(&cut, 1.0, 0.1).iter().map(|[a, b]| a.distance(*b)).sum();
         assert!((length * 0.1 - 9600.0).abs() < 10.0, "{length}");
         let half: f64 = hatched(&cut, 0.5, 0.1).iter().map(|[a, b]| a.distance(*b)).sum();

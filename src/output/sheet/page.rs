@@ -150,7 +150,8 @@ fn turning_points(major: DVec2, minor: DVec2, from: f64, to: f64) -> impl Iterat
     angles.into_iter().flat_map(move |angle| {
         let first = angle + ((low - angle) / PI).ceil() * PI;
         let count = ((high - first) / PI).floor() + 1.0;
-        (0..count.clamp(0.0, 4.0) as u32).map(move |i| (first + f64::from(i) * PI - from) / (to - from))
+        (0..count.clamp(0.0, 4.0) as u32)
+            .map(move |i| (first + f64::from(i) * PI - from) / (to - from))
     })
 }
 

@@ -39,8 +39,7 @@ const FIRST_LAYER: i32 = 6;
 pub fn write(page: &Page) -> Vec<u8> {
     let has = |layer: &Layer| page.groups.iter().any(|g| g.layer(*layer).next().is_some());
     let layers: Vec<Layer> = Layer::ALL.into_iter().filter(has).collect();
-    let refs: Vec<Ref> =
-        (FIRST_LAYER..).take(layers.len()).map(Ref::new).collect();
+    let refs: Vec<Ref> = (FIRST_LAYER..).take(layers.len()).map(Ref::new).collect();
     let mut pdf = Pdf::new();
     write_catalog(&mut pdf, &refs);
     pdf.pages(PAGES).kids([PAGE]).count(1);
@@ -172,7 +171,11 @@ fn fill(content: &mut Content, rings: &[Vec<DVec2>]) {
     for ring in rings {
         for (i, &p) in ring.iter().enumerate() {
             let (x, y) = xy(p);
-            if i == 0 { content.move_to(x, y) } else { content.line_to(x, y) };
+            if i == 0 {
+                content.move_to(x, y)
+            } else {
+                content.line_to(x, y)
+            };
         }
         content.close_path();
     }

@@ -203,7 +203,8 @@ mod tests {
             from,
             to,
         };
-        let data = |from, to| path_data(&Path::of(arc(from, to).at(DVec2::ZERO, 0.0), arc(from, to)), 0.0);
+        let data =
+            |from, to| path_data(&Path::of(arc(from, to).at(DVec2::ZERO, 0.0), arc(from, to)), 0.0);
         assert_eq!(data(0.0, TAU / 4.0), "M2 0A2 1 0 0 0 0 -1");
         assert_eq!(data(TAU / 4.0, 0.0), "M0 -1A2 1 0 0 1 2 0");
         assert_eq!(data(0.0, TAU).matches('A').count(), 3);
