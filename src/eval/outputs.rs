@@ -8,7 +8,7 @@ use super::{
     instance::{Cell, InstanceId},
     nearest::did_you_mean,
     types::{Type, shown},
-    unit::{Global, GlobalKind, Unit},
+    unit::{Code as Expression, CodeId, Global, GlobalKind, RecordPart, Unit},
     value::{Symbol, Value},
 };
 use crate::{
@@ -100,14 +100,43 @@ pub struct ExportInfo {
     pub file: Option<Arc<str>>,
     /// Its place.
     pub span: Span,
-    /// The outputs it writes as a whole.
-    pub outputs: Vec<Arc<str>>,
+}
+
+/// What an export writes.
+#[derive(Clone, PartialEq, Debug)]
+pub struct ExportPart {
+    /// Its name in the file.
+    pub name: String,
+    /// What it is.
+    pub product: Product,
+    /// The output it is, where the export or a field of its record says so by name: `= a`,
+    /// `= { lid, base = a }`. An expression, such as `a + b` or `[a, b]`, is a shape of its own.
+    pub output: Option<Arc<str>>,
 }
 
 impl Global {
     /// Whether it is seen from outside its file.
     pub(super) fn is_open(&self) -> bool {
         self.public || matches!(self.kind, GlobalKind::Param(_) | GlobalKind::Output(_))
+    }
+}
+
+impl Unit {
+    /// The output that an expression is, if it is the name of one.
+    fn output(&self, code: CodeId) -> Option<Arc<str>> {
+        let Expression::Global(number) = self.code[code.0 as usize] else { return None };
+        let global = &self.globals[number as usize];
+        matches!(global.kind, GlobalKind::Output(_)).then(|| global.name.text.clone())
+    }
+
+    /// The expression of a field, if an expression is a record that has it written out.
+    fn field(&self, record: CodeId, wanted: &str) -> Option<CodeId> {
+        let Expression::Record(parts) = &self.code[record.0 as usize] else { return None };
+        let fields = parts.iter().rev().filter_map(|part| match part {
+            RecordPart::Field(name, code) => (**name == *wanted).then_some(*code),
+            RecordPart::Spread(_) => None,
+        });
+        fields.into_iter().next()
     }
 }
 
@@ -298,11 +327,9 @@ impl Evaluator<'_> {
             if let Err(failure) = &file {
                 self.report(failure);
             }
-            let outputs = export.outputs.iter();
             exports.push(ExportInfo {
                 file: file.ok().map(|value| value.to_string().into()),
                 span: global.name.span,
-                outputs: outputs.map(|&n| unit.globals[n as usize].name.text.clone()).collect(),
             });
         }
         exports
@@ -314,17 +341,13 @@ impl Evaluator<'_> {
         &mut self,
         instance: InstanceId,
         index: usize,
-    ) -> Result<Vec<(String, Product)>, ()> {
+    ) -> Result<Vec<ExportPart>, ()> {
         self.steps_taken = 0;
         let result = self.export_parts(instance, index);
         result.map_err(|failure| self.report(&failure))
     }
 
-    fn export_parts(
-        &mut self,
-        instance: InstanceId,
-        index: usize,
-    ) -> Outcome<Vec<(String, Product)>> {
+    fn export_parts(&mut self, instance: InstanceId, index: usize) -> Outcome<Vec<ExportPart>> {
         self.admitted(instance)?;
         let unit = self.unit_of(instance);
         let export = unit.exports.get(index).ok_or(Failure::TOLD)?;
@@ -342,17 +365,16 @@ impl Evaluator<'_> {
             }
             let mut parts = vec![];
             for (name, value) in record.fields() {
-                parts.push((name.to_string(), self.export_product(value, at, name)?));
+                let product = self.export_product(value, at, name)?;
+                let output = unit.field(global.value, name).and_then(|code| unit.output(code));
+                parts.push(ExportPart { name: name.to_string(), product, output });
             }
             return Ok(parts);
         }
-        let name = match export.outputs[..] {
-            [output] if !matches!(value, Value::List(_)) => {
-                unit.globals[output as usize].name.text.to_string()
-            }
-            _ => file_stem(&file),
-        };
-        Ok(vec![(name.clone(), self.export_product(&value, at, &name)?)])
+        let output = unit.output(global.value);
+        let name = output.as_ref().map_or_else(|| file_stem(&file), |name| name.to_string());
+        let product = self.export_product(&value, at, &name)?;
+        Ok(vec![ExportPart { name, product, output }])
     }
 
     fn export_product(&mut self, value: &Value, at: Span, name: &str) -> Outcome<Product> {

@@ -245,8 +245,6 @@ pub struct ParamCode {
 pub struct ExportCode {
     pub file: CodeId,
     pub global: u32,
-    /// The outputs that it writes as a whole.
-    pub outputs: Vec<u32>,
 }
 
 #[derive(Debug)]

@@ -8,43 +8,58 @@ use glam::DVec2;
 
 use super::{Tolerance, sides};
 
-/// The most chords one curve is drawn with, whatever the tolerance says.
+/// The most chords one curve is drawn with. Who draws a curve that needs more refuses it.
 pub const MOST_CHORDS: u32 = 1 << 14;
 
 /// The number of chords an arc of `radius` (mm) over `angle` (radians, any sign) needs: a share of those of
-/// the full circle, which are [`MOST_CHORDS`] at most; at least 1.
+/// the full circle; at least 1, and maybe more than [`MOST_CHORDS`].
 pub fn arc_chords(radius: f64, angle: f64, tolerance: Tolerance) -> u32 {
-    let whole = f64::from(sides::circle(radius, tolerance).min(MOST_CHORDS));
+    let whole = f64::from(sides::circle(radius, tolerance));
     // A turn divided evenly must not cost one chord more for the rounding of the angle.
     const SLACK: f64 = 1e-9;
     (whole * angle.abs() / std::f64::consts::TAU - SLACK).ceil().max(1.0) as u32
 }
 
-/// The corners of a chain of chords along a quadratic Bezier curve, its first point left out.
-pub fn quadratic(p: [DVec2; 3], tolerance: Tolerance) -> impl Iterator<Item = DVec2> {
-    let bend = 2.0 * (p[0] - 2.0 * p[1] + p[2]).length();
-    along(bend, tolerance, p[2], move |t| p[0].lerp(p[1], t).lerp(p[1].lerp(p[2], t), t))
+/// A Bezier curve as chords.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Chords {
+    /// The number that the tolerance asks for.
+    pub needed: u32,
+    /// The corners of the chain, the curve's first point left out; not more than [`MOST_CHORDS`].
+    pub points: Vec<DVec2>,
 }
 
-/// The corners of a chain of chords along a cubic Bezier curve, its first point left out.
-pub fn cubic(p: [DVec2; 4], tolerance: Tolerance) -> impl Iterator<Item = DVec2> {
+/// The chain of chords along a quadratic Bezier curve.
+pub fn quadratic(p: [DVec2; 3], tolerance: Tolerance) -> Chords {
+    let bend = 2.0 * (p[0] - 2.0 * p[1] + p[2]).length();
+    along(bend, tolerance, p[2], |t| p[0].lerp(p[1], t).lerp(p[1].lerp(p[2], t), t))
+}
+
+/// The chain of chords along a cubic Bezier curve.
+///
+/// ```
+/// use glam::dvec2;
+/// use katachi::geom::{Tolerance, flatten::{MOST_CHORDS, cubic}};
+/// let curve = |size: f64| [(0., 0.), (0., 1.), (1., 2.), (2., 2.)].map(|(x, y)| dvec2(x, y) * size);
+/// let drawn = cubic(curve(10.0), Tolerance::DEFAULT);
+/// assert_eq!((drawn.needed, drawn.points.len()), (13, 13));
+/// assert!(cubic(curve(1e9), Tolerance::DEFAULT).needed > MOST_CHORDS);
+/// ```
+pub fn cubic(p: [DVec2; 4], tolerance: Tolerance) -> Chords {
     let bends = [p[0] - 2.0 * p[1] + p[2], p[1] - 2.0 * p[2] + p[3]];
     let bend = 6.0 * bends[0].length().max(bends[1].length());
-    along(bend, tolerance, p[3], move |t| {
+    along(bend, tolerance, p[3], |t| {
         let (a, b, c) = (p[0].lerp(p[1], t), p[1].lerp(p[2], t), p[2].lerp(p[3], t));
         a.lerp(b, t).lerp(b.lerp(c, t), t)
     })
 }
 
-fn along(
-    bend: f64,
-    tolerance: Tolerance,
-    end: DVec2,
-    at: impl Fn(f64) -> DVec2,
-) -> impl Iterator<Item = DVec2> {
-    let chords = libm::sqrt(bend / (8.0 * tolerance.mm())).ceil();
-    let chords = chords.clamp(1.0, f64::from(MOST_CHORDS)) as u32;
-    (1..=chords).map(move |i| if i == chords { end } else { at(f64::from(i) / f64::from(chords)) })
+fn along(bend: f64, tolerance: Tolerance, end: DVec2, at: impl Fn(f64) -> DVec2) -> Chords {
+    let needed = libm::sqrt(bend / (8.0 * tolerance.mm())).ceil();
+    let needed = needed.clamp(1.0, f64::from(sides::MOST)) as u32;
+    let drawn = needed.min(MOST_CHORDS);
+    let point = |i| if i == drawn { end } else { at(f64::from(i) / f64::from(drawn)) };
+    Chords { needed, points: (1..=drawn).map(point).collect() }
 }
 
 #[cfg(test)]
@@ -56,7 +71,7 @@ mod tests {
     #[test]
     fn a_cubic_ends_where_it_ends() {
         let p = [dvec2(0., 0.), dvec2(0., 5.), dvec2(5., 10.), dvec2(10., 10.)];
-        let points: Vec<_> = cubic(p, Tolerance::DEFAULT).collect();
+        let points = cubic(p, Tolerance::DEFAULT).points;
         assert_eq!(points.last(), Some(&p[3]));
         assert!(points.len() > 5 && points.len() < 20);
     }

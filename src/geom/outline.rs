@@ -2,7 +2,10 @@
 
 use glam::DVec2;
 
-use super::{Contour, EdgeCurve, Tolerance, flatten};
+use super::{
+    Contour, EdgeCurve, Tolerance,
+    flatten::{self, Chords},
+};
 
 /// The cosine of the turn, 10 degrees, up to which two curves in a row are drawn as one.
 const SMOOTH: f64 = 0.985;
@@ -27,6 +30,7 @@ pub struct Outline {
     /// The number of the last smooth curve and its direction at its end.
     curve: Option<(u32, DVec2)>,
     free: u32,
+    most_chords: u32,
 }
 
 impl Outline {
@@ -39,6 +43,7 @@ impl Outline {
             at: DVec2::ZERO,
             curve: None,
             free: 0,
+            most_chords: 0,
         }
     }
 
@@ -58,9 +63,7 @@ impl Outline {
     pub fn quad_to(&mut self, c: DVec2, p: DVec2) {
         let from = self.at;
         let curve = self.smooth(c - from, p - c, p - from);
-        for point in flatten::quadratic([from, c, p], self.tolerance) {
-            self.edge(point, curve);
-        }
+        self.chords(flatten::quadratic([from, c, p], self.tolerance), curve);
     }
 
     /// A cubic Bezier curve with two control points.
@@ -69,9 +72,18 @@ impl Outline {
         let chord = p - from;
         let start = if c == from { chord } else { c - from };
         let curve = self.smooth(start, if d == p { chord } else { p - d }, chord);
-        for point in flatten::cubic([from, c, d, p], self.tolerance) {
-            self.edge(point, curve);
-        }
+        self.chords(flatten::cubic([from, c, d, p], self.tolerance), curve);
+    }
+
+    fn chords(&mut self, chords: Chords, curve: EdgeCurve) {
+        self.most_chords = self.most_chords.max(chords.needed);
+        chords.points.into_iter().for_each(|point| self.edge(point, curve));
+    }
+
+    /// The most chords that a curve needed so far. One that needs more than [`flatten::MOST_CHORDS`] was
+    /// drawn coarser than the tolerance asks for: refuse it.
+    pub fn most_chords(&self) -> u32 {
+        self.most_chords
     }
 
     /// The curve that begins in direction `start` and ends in direction `end`: the one before, if it

@@ -1,5 +1,7 @@
 //! The one home of small numbers.
 
+use super::Stretch;
+
 /// The chord error the modeller allows, in millimetres: no point of a mesh is farther than this from
 /// the true surface. Built once, in `session`, and passed down by value. Exact kernels take none.
 #[derive(Clone, Copy, PartialEq, PartialOrd, Debug)]
@@ -17,6 +19,16 @@ impl Tolerance {
     /// Half of it, where two errors add.
     pub fn half(self) -> Tolerance {
         Tolerance((self.0 / 2.0).max(f64::MIN_POSITIVE))
+    }
+
+    /// What is allowed before a stretch so that this is kept after it.
+    ///
+    /// ```
+    /// use katachi::geom::{Stretch, Tolerance};
+    /// assert_eq!(Tolerance::DEFAULT.before(Stretch::by(10.0)).mm(), 0.005);
+    /// ```
+    pub fn before(self, stretch: Stretch) -> Tolerance {
+        Tolerance((self.0 / stretch.factor()).clamp(f64::MIN_POSITIVE, f64::MAX))
     }
 
     /// The allowed chord error in millimetres.

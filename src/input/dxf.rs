@@ -15,7 +15,7 @@ use glam::{DAffine2, DMat2, DVec2, dvec2};
 
 use super::{Figure, Place, ReadError, error::Format};
 use crate::geom::{
-    Tolerance,
+    Stretch, Tolerance,
     overlay::{Fill, Rule, overlay},
     trig,
 };
@@ -37,7 +37,7 @@ const MOST_DEPTH: usize = 32;
 ///
 /// # Errors
 /// A binary file, lines that are no pairs of code and value, numbers out of place, outlines that do
-/// not close (with their ends), blocks nested without end, no outlines.
+/// not close (with their ends), curves of more chords than are drawn, blocks nested without end, no outlines.
 pub fn read(bytes: &[u8], tolerance: Tolerance) -> Result<Figure, ReadError> {
     if bytes.starts_with(b"AutoCAD Binary DXF") {
         return Err(DXF.error(
@@ -97,8 +97,7 @@ impl Tracer<'_> {
         depth: usize,
     ) -> Result<(), ReadError> {
         for (i, entity) in entities.iter().enumerate() {
-            let scale = map.matrix2.x_axis.length().max(map.matrix2.y_axis.length());
-            let fine = Tolerance::new(self.tolerance.mm() / scale).unwrap_or(self.tolerance);
+            let fine = self.tolerance.before(Stretch::of_plane(map.matrix2));
             let map = *map * entity.side()?;
             let chain = match entity.kind {
                 "LINE" => Some(Chain::line(entity)?),

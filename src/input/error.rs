@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::geom::flatten::MOST_CHORDS;
+
 /// What was found in a file, what is needed there, and where.
 #[derive(Clone, PartialEq, Debug, thiserror::Error)]
 pub enum ReadError {
@@ -74,6 +76,15 @@ impl Format {
         needed: impl Into<String>,
     ) -> ReadError {
         ReadError::Content { format: self.0, place, found: found.into(), needed: needed.into() }
+    }
+
+    /// A curve that the tolerance asks for more chords of than are drawn.
+    pub fn chords(self, what: &str, needed: u32) -> Result<(), ReadError> {
+        if needed <= MOST_CHORDS {
+            return Ok(());
+        }
+        let what = format!("{what} of {needed} chords at this tolerance");
+        Err(self.limit(what, format!("{MOST_CHORDS} chords")))
     }
 
     /// Something too large.

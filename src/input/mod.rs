@@ -8,6 +8,7 @@ pub mod dxf;
 pub mod error;
 pub mod obj;
 pub mod off;
+mod order;
 pub mod ply;
 pub mod soup;
 pub mod stl;

@@ -1,8 +1,8 @@
 //! STL, binary and ASCII: triangles with their corners written out.
 //!
 //! A file of exactly 84 + 50 n bytes, n from its header, is binary, whatever it begins with: many
-//! binary files begin with "solid". Equal corners become one point. Read in one pass over the bytes, in
-//! memory of about 50 bytes for each triangle.
+//! binary files begin with "solid". Equal corners become one point. Read in memory of about 50 bytes for each
+//! triangle. Triangles are taken in the order of the file, those of a large one in no order along a curve.
 
 use glam::dvec3;
 
@@ -10,6 +10,7 @@ use super::{
     Place, ReadError,
     corners::Corners,
     error::{Format, MOST_COORDINATE, shortened},
+    order::along_curve,
     soup::MOST_FACES,
 };
 use crate::geom::{Origin, PolyMesh, Surface};
@@ -66,22 +67,31 @@ fn is_ascii(bytes: &[u8]) -> bool {
 
 fn read_binary(records: &[u8], count: usize) -> Result<PolyMesh, ReadError> {
     check_count(count)?;
-    let mut corners = Corners::with_triangles(count);
-    for (number, record) in records.chunks_exact(RECORD).enumerate() {
-        let mut triangle = [0_u32; 3];
-        for (k, corner) in record[12..48].chunks_exact(12).enumerate() {
-            let value = |i: usize| {
-                f32::from_le_bytes([corner[i], corner[i + 1], corner[i + 2], corner[i + 3]])
-            };
-            let point = [value(0), value(4), value(8)];
-            if !point.iter().all(|c| c.abs() <= MOST_COORDINATE as f32) {
-                return Err(not_finite(number, point));
-            }
-            triangle[k] = corners.number(point);
+    let triangle = |number: usize| corners_of(&records[number * RECORD..][..RECORD]);
+    let whole = |point: &[f32; 3]| point.iter().all(|c| c.abs() <= MOST_COORDINATE as f32);
+    for number in 0..count {
+        if let Some(point) = triangle(number).into_iter().find(|point| !whole(point)) {
+            return Err(not_finite(number, point));
         }
-        corners.triangle(triangle);
+    }
+    let mut corners = Corners::with_triangles(count);
+    let mut take = |number: usize| {
+        let numbers = triangle(number).map(|point| corners.number(point));
+        corners.triangle(numbers);
+    };
+    match along_curve(count, triangle) {
+        Some(order) => order.into_iter().for_each(|number| take(number as usize)),
+        None => (0..count).for_each(take),
     }
     finish(corners)
+}
+
+/// The corners in a record.
+fn corners_of(record: &[u8]) -> [[f32; 3]; 3] {
+    let value = |at: usize| {
+        f32::from_le_bytes([record[at], record[at + 1], record[at + 2], record[at + 3]])
+    };
+    [12, 24, 36].map(|at| [value(at), value(at + 4), value(at + 8)])
 }
 
 fn check_count(count: usize) -> Result<(), ReadError> {

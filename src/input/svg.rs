@@ -28,7 +28,7 @@ const STACK: usize = 64 << 20;
 /// The figure of an SVG file.
 ///
 /// # Errors
-/// What `usvg` refuses, and a drawing without filled shapes.
+/// What `usvg` refuses, curves of more chords than are drawn, and a drawing without filled shapes.
 pub fn read(bytes: &[u8], tolerance: Tolerance) -> Result<Figure, ReadError> {
     let text = SVG.text(bytes)?;
     stacker::grow(STACK, || drawn(text, tolerance))
@@ -51,6 +51,7 @@ fn drawn(text: &str, tolerance: Tolerance) -> Result<Figure, ReadError> {
         left_out: LeftOut::default(),
     };
     drawing.group(tree.root());
+    SVG.chords("a curve", drawing.outline.most_chords())?;
     if text.contains("<text") {
         drawing.left_out.texts = true;
     }

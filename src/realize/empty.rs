@@ -3,8 +3,8 @@
 use super::{Realizer, Solid, failure::Made, paint::Paint, structure::operands, unwrap};
 use crate::{
     base::{Code, Diagnostic},
-    geom::Placement,
-    shape::{Node, ShapeGraph, ShapeId},
+    geom::{Placement, Stretch},
+    shape::{Node, ShapeGraph, ShapeId, Stretched},
 };
 
 use glam::DVec3;
@@ -89,7 +89,8 @@ fn reach(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Made<Option<Bo
                 open.extend(list.first().map(|&id| (id, placement)));
             }
             _ => {
-                let solid = realizer.core_made(found.core)?;
+                let stretch = Stretch::of(placement.linear());
+                let solid = realizer.solid_under(graph, Stretched { id: found.core, stretch })?;
                 let corners = solid.polyhedron.mesh().points.iter().map(|p| placement.point(*p));
                 let here = corners.map(|p| [p, p]).reduce(joined);
                 whole = whole.into_iter().chain(here).reduce(joined);

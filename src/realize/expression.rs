@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use glam::DMat3;
 use rustc_hash::FxHashMap;
 
 use super::{
@@ -9,15 +10,16 @@ use super::{
     failure::{At, Coded, Made},
     paint::Paint,
     store::Solid,
-    unwrap,
+    structure, unwrap,
 };
 use crate::{
     base::Code,
+    geom::Stretch,
     kernel::brep::{
         Polyhedron,
         boolean::{self, BooleanError, Tree},
     },
-    shape::{Node, ShapeGraph, ShapeId},
+    shape::{Node, ShapeGraph, ShapeId, Stretched},
 };
 
 impl Coded for BooleanError {
@@ -31,12 +33,12 @@ impl Coded for BooleanError {
 }
 
 /// Makes the solid of a set operation whose leaves are made.
-pub fn make(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Made<Solid> {
+pub fn make(realizer: &Realizer, graph: &ShapeGraph, unit: Stretched) -> Made<Solid> {
     let mut builder =
-        Builder { realizer, graph, painted: FxHashMap::default(), triangles: 0, snap: 0.0 };
-    let tree = builder.operation(id, &Paint::default())?;
-    check_size(graph, id, builder.triangles)?;
-    let evaluated = boolean::evaluate(&tree).at(graph.origin(id))?;
+        Builder { realizer, graph, unit, painted: FxHashMap::default(), triangles: 0, snap: 0.0 };
+    let tree = builder.operation(unit.id, DMat3::IDENTITY, &Paint::default())?;
+    check_size(graph, unit.id, builder.triangles)?;
+    let evaluated = boolean::evaluate(&tree).at(graph.origin(unit.id))?;
     let snap = evaluated.snap.max(builder.snap);
     Ok(Solid { polyhedron: Arc::new(evaluated.solid), snap })
 }
@@ -44,21 +46,22 @@ pub fn make(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Made<Solid>
 struct Builder<'a> {
     realizer: &'a Realizer<'a>,
     graph: &'a ShapeGraph,
+    unit: Stretched,
     /// Leaves that bear the same paint are shared.
-    painted: FxHashMap<(ShapeId, Paint), Arc<Polyhedron>>,
+    painted: FxHashMap<(Stretched, Paint), Arc<Polyhedron>>,
     triangles: usize,
     snap: f64,
 }
 
 impl Builder<'_> {
     /// The tree of a set operation with `paint` on all its faces. Operations of one kind that stand
-    /// directly inside one another become one.
-    fn operation(&mut self, id: ShapeId, paint: &Paint) -> Made<Tree> {
+    /// directly inside one another become one. `outer` is the linear part of the way from here to the unit.
+    fn operation(&mut self, id: ShapeId, outer: DMat3, paint: &Paint) -> Made<Tree> {
         let node = self.graph.node(id);
-        let list = super::structure::operands(node).unwrap_or_default();
+        let list = structure::operands(node).unwrap_or_default();
         let mut trees = Vec::with_capacity(list.len());
         for (i, &operand) in list.iter().enumerate() {
-            let tree = self.operand(id, operand, paint)?;
+            let tree = self.operand((id, operand), outer, paint)?;
             match (node, tree) {
                 (Node::Union(_), Tree::Union(inner))
                 | (Node::Intersection(_), Tree::Intersection(inner)) => trees.extend(inner),
@@ -74,10 +77,18 @@ impl Builder<'_> {
         })
     }
 
-    fn operand(&mut self, parent: ShapeId, id: ShapeId, paint: &Paint) -> Made<Tree> {
+    fn operand(
+        &mut self,
+        (parent, id): (ShapeId, ShapeId),
+        outer: DMat3,
+        paint: &Paint,
+    ) -> Made<Tree> {
         let Unwrapped { core, placement, paint } = unwrap(self.graph, id, paint.clone())?;
-        let inner = self.realizer.structure().takes_in(parent, core);
-        let tree = if inner { self.operation(core, &paint)? } else { self.leaf(core, paint)? };
+        let linear = outer * placement.linear();
+        let tree = match self.realizer.structure().takes_in(parent, core) {
+            true => self.operation(core, linear, &paint)?,
+            false => self.leaf(core, linear, paint)?,
+        };
         check_size(self.graph, parent, self.triangles)?;
         Ok(match placement.is_identity() {
             true => tree,
@@ -85,14 +96,15 @@ impl Builder<'_> {
         })
     }
 
-    fn leaf(&mut self, core: ShapeId, paint: Paint) -> Made<Tree> {
-        let solid = self.realizer.core_made(core)?;
-        self.snap = self.snap.max(solid.snap);
+    fn leaf(&mut self, core: ShapeId, linear: DMat3, paint: Paint) -> Made<Tree> {
+        let leaf = structure::leaf(self.graph, self.unit, core, linear);
+        let solid = self.realizer.unit_made(leaf)?;
+        self.snap = self.snap.max(solid.snap * Stretch::of(linear).factor());
         self.triangles += solid.polyhedron.mesh().triangle_count();
         if paint.is_none() {
             return Ok(Tree::Leaf(solid.polyhedron));
         }
-        let painted = self.painted.entry((core, paint)).or_insert_with_key(|(_, paint)| {
+        let painted = self.painted.entry((leaf, paint)).or_insert_with_key(|(_, paint)| {
             Arc::new(Polyhedron::trusted(paint.applied(solid.polyhedron.mesh())))
         });
         Ok(Tree::Leaf(painted.clone()))

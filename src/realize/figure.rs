@@ -24,7 +24,7 @@ use crate::{
         text::{Align, Baseline, Text, TextOptions},
     },
     shape::{
-        GeometryError, Node, ShapeGraph, ShapeId,
+        GeometryError, Node, ShapeGraph, ShapeId, Stretched,
         node::{HorizontalAlign, TextSpec, VerticalAlign},
     },
 };
@@ -57,7 +57,7 @@ impl Coded for ProfileError {
                 Code::SelfCrossing
             }
             ProfileError::Font { .. } | ProfileError::Glyph { .. } => Code::BadFile,
-            ProfileError::LongText { .. } => Code::Limit,
+            ProfileError::LongText { .. } | ProfileError::FineCurve { .. } => Code::Limit,
             ProfileError::Sides { sides } if *sides > profile::MOST_SIDES => Code::Limit,
             _ => Code::Degenerate,
         }
@@ -68,45 +68,49 @@ impl Coded for ProfileError {
 type Parts<'a> = &'a dyn Fn(ShapeId) -> Made<Arc<Figure>>;
 
 /// Makes the figure of a profile node whose parts are made.
-pub fn make(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Made<Figure> {
-    build(realizer, graph, id, realizer.tolerance(), &|id| realizer.figure_made(id))
+pub fn make(realizer: &Realizer, graph: &ShapeGraph, unit: Stretched) -> Made<Figure> {
+    let tolerance = realizer.tolerance_of(unit);
+    build(realizer, graph, unit, tolerance, &|part| realizer.figure_made(part))
 }
 
-/// The figure of a profile for a solid that bends it once more, with the tolerance that is left for the
-/// bending: the two errors add up, so each gets half where the profile has curves.
+/// The figure of a profile for a solid that bends it once more, and what is left of the solid's `tolerance`
+/// for the bending: the two errors add up, so each gets half where the profile has curves.
 pub fn bent(
     realizer: &Realizer,
     graph: &ShapeGraph,
-    id: ShapeId,
+    unit: Stretched,
+    tolerance: Tolerance,
 ) -> Made<(Arc<Figure>, Tolerance)> {
-    let (figure, tolerance) = (realizer.figure_made(id)?, realizer.tolerance());
+    let figure = realizer.figure_made(unit)?;
     let straight = |contour: &Contour| contour.curves.iter().all(|c| *c == EdgeCurve::Line);
-    let half = Tolerance::new(tolerance.mm() / 2.0);
-    let Some(half) = half.filter(|_| !figure.region.contours().all(straight)) else {
+    if figure.region.contours().all(straight) {
         return Ok((figure, tolerance));
-    };
-    let mut needed = BTreeSet::from([id]);
-    let mut open = vec![id];
-    while let Some(next) = open.pop() {
-        open.extend(figure_parts(graph.node(next)).into_iter().filter(|&part| needed.insert(part)));
     }
-    let mut made: BTreeMap<ShapeId, Arc<Figure>> = BTreeMap::new();
+    let mut needed = BTreeSet::from([unit]);
+    let mut open = vec![unit];
+    while let Some(next) = open.pop() {
+        open.extend(figure_parts(graph, next).into_iter().filter(|&part| needed.insert(part)));
+    }
+    let mut made: BTreeMap<Stretched, Arc<Figure>> = BTreeMap::new();
     for &next in &needed {
-        let figure = build(realizer, graph, next, half, &|id| Ok(made[&id].clone()))?;
+        let half = realizer.tolerance_of(next).half();
+        let figure = build(realizer, graph, next, half, &|part| Ok(made[&part].clone()))?;
         made.insert(next, Arc::new(figure));
     }
-    Ok((made[&id].clone(), half))
+    Ok((made[&unit].clone(), tolerance.half()))
 }
 
 fn build(
     realizer: &Realizer,
     graph: &ShapeGraph,
-    id: ShapeId,
+    unit: Stretched,
     tolerance: Tolerance,
-    parts: Parts,
+    made: &dyn Fn(Stretched) -> Made<Arc<Figure>>,
 ) -> Made<Figure> {
+    let id = unit.id;
     let origin = graph.origin(id);
-    let part = |id: &ShapeId| parts(*id);
+    let part = |id: &ShapeId| made(graph.part(unit, *id));
+    let parts: Parts = &|id| part(&id);
     match graph.node(id) {
         Node::Rect { size } => profile::rect(*size).at(origin).map(Figure::flat),
         Node::Ellipse { radii, sides } => {

@@ -19,10 +19,12 @@ use crate::geom::{Origin, PolyMesh, Surface, triangulate::triangulate};
 type Corners = [u32; 3];
 
 /// The mesh closed, its equal points being one already: triangles given twice count once, two that face
-/// each other cancel, and holes are filled. Edges may border more than two triangles.
+/// each other cancel, those that face the other way than most of their piece are turned over, and holes are
+/// filled. Edges may border more than two triangles.
 pub fn closed(mesh: &PolyMesh) -> PolyMesh {
     let mut points = mesh.points.clone();
     let mut triangles = different(&triangulate(mesh).corners);
+    agree(&mut triangles);
     fill(&mut points, &mut triangles);
     mesh_of(points, &triangles)
 }
@@ -44,6 +46,56 @@ fn different(triangles: &[Corners]) -> Vec<Corners> {
     let mut seen = FxHashSet::default();
     let keep = |t: &Corners| seen.insert(*t) && !given.contains(&[t[0], t[2], t[1]]);
     turned.into_iter().filter(keep).collect()
+}
+
+/// Turns triangles over until neighbours at edges of just two triangles face one way, as most of each piece do.
+/// A piece with one side only stays in disagreement somewhere.
+fn agree(triangles: &mut [Corners]) {
+    let across = neighbours(triangles);
+    let mut turned: Vec<Option<bool>> = vec![None; triangles.len()];
+    for first in 0..triangles.len() {
+        if turned[first].is_some() {
+            continue;
+        }
+        turned[first] = Some(false);
+        let mut piece = vec![first];
+        let mut next = 0;
+        while next < piece.len() {
+            let here = piece[next];
+            next += 1;
+            for &(there, against) in across[here].iter().flatten() {
+                if turned[there].is_none() {
+                    turned[there] = turned[here].map(|turn| turn ^ against);
+                    piece.push(there);
+                }
+            }
+        }
+        let minority = 2 * piece.iter().filter(|&&t| turned[t] == Some(true)).count() > piece.len();
+        for t in piece {
+            if turned[t] == Some(!minority) {
+                triangles[t].swap(1, 2);
+            }
+        }
+    }
+}
+
+/// Across each edge of each triangle the other triangle, where there is just one, and whether it runs along the
+/// edge the same way and so faces against this one.
+fn neighbours(triangles: &[Corners]) -> Vec<[Option<(usize, bool)>; 3]> {
+    let mut borders: Vec<(u32, u32, usize)> = vec![];
+    for (t, &triangle) in triangles.iter().enumerate() {
+        let sides = edges(triangle).into_iter().zip(0..);
+        borders.extend(sides.map(|((a, b), k)| (a.min(b), a.max(b), 3 * t + k)));
+    }
+    borders.sort_unstable();
+    let mut found = vec![[None; 3]; triangles.len()];
+    for pair in borders.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1)).filter(|g| g.len() == 2) {
+        let [x, y] = [pair[0].2, pair[1].2];
+        let against = triangles[x / 3][x % 3] == triangles[y / 3][y % 3];
+        found[x / 3][x % 3] = Some((y / 3, against));
+        found[y / 3][y % 3] = Some((x / 3, against));
+    }
+    found
 }
 
 /// Puts a fan into every hole: from the middle of its corners to its edges.

@@ -3,6 +3,12 @@
 //!
 //! Work is planned as waves of independent units (see [`structure`]); the units of a wave are made at
 //! the same time where that pays, and what is made depends on the graph and the tolerance alone.
+//!
+//! The tolerance holds where the output stands. What is stretched on its way there is made with the
+//! tolerance divided by the [`Stretch`] of that way: a ball of radius 5 scaled by 10 has the facets of a
+//! ball of radius 50, and so has a ball of radius 500 scaled by 0.1. A scale that differs by direction
+//! counts with its largest. Things are kept by node and stretch, so that what is asked of a shape does not
+//! depend on who else asks for it.
 
 mod answers;
 mod empty;
@@ -37,9 +43,9 @@ use self::{
 };
 use crate::{
     base::{Code, Diagnostic, Phase, Watch, World, watch::during},
-    geom::{Placement, Tolerance, spherical_projection::Projection},
+    geom::{Placement, Stretch, Tolerance, spherical_projection::Projection},
     kernel::brep::Polyhedron,
-    shape::{Kind, Measures, Node, ShapeGraph, ShapeId},
+    shape::{Kind, Measures, Node, ShapeGraph, ShapeId, Stretched},
 };
 
 /// Triangles that one solid, or all operands of one set operation together, may have: at most about
@@ -83,12 +89,22 @@ impl<'w> Realizer<'w> {
         *self.tolerance.get_or_init(Tolerance::default)
     }
 
+    /// The chord error of what is stretched after it is made.
+    fn tolerance_of(&self, unit: Stretched) -> Tolerance {
+        self.tolerance().before(unit.stretch)
+    }
+
     /// Makes everything that `roots` need, independent units at the same time. Failures are kept and
     /// come out when a shape is asked for.
     pub fn realize(&self, graph: &ShapeGraph, roots: &[ShapeId]) {
+        let units = roots.iter().filter_map(|&id| structure::unit_of(graph, id, Stretch::ONE));
+        self.realize_units(graph, units);
+    }
+
+    fn realize_units(&self, graph: &ShapeGraph, units: impl IntoIterator<Item = Stretched>) {
         let mut structure = self.structure.write().unwrap_or_else(PoisonError::into_inner);
         structure.extend(graph);
-        let waves = structure.plan(graph, roots, |id| self.entries.has(&id));
+        let waves = structure.plan(graph, units, |unit| self.entries.has(&unit));
         drop(structure);
         if waves.is_empty() {
             return;
@@ -101,13 +117,13 @@ impl<'w> Realizer<'w> {
         });
     }
 
-    fn make_wave(&self, graph: &ShapeGraph, wave: &[ShapeId]) {
-        let make = |&id: &ShapeId| {
-            let entry = self.make(graph, id);
+    fn make_wave(&self, graph: &ShapeGraph, wave: &[Stretched]) {
+        let make = |&unit: &Stretched| {
+            let entry = self.make(graph, unit);
             self.watch.step();
-            (id, entry)
+            (unit, entry)
         };
-        let heavy = wave.iter().filter(|&&id| is_heavy(graph, id)).count();
+        let heavy = wave.iter().filter(|unit| is_heavy(graph, unit.id)).count();
         let made: Vec<_> = match heavy {
             0 | 1 => wave.iter().map(make).collect(),
             _ => wave.par_iter().map(make).collect(),
@@ -115,15 +131,15 @@ impl<'w> Realizer<'w> {
         self.entries.extend(made);
     }
 
-    fn make(&self, graph: &ShapeGraph, id: ShapeId) -> Made<Entry> {
-        match graph.kind(id) {
-            Kind::Profile => figure::make(self, graph, id).map(|f| Entry::Figure(Arc::new(f))),
-            Kind::Solid if structure::operands(graph.node(id)).is_some() => {
-                expression::make(self, graph, id).map(Entry::Solid)
+    fn make(&self, graph: &ShapeGraph, unit: Stretched) -> Made<Entry> {
+        match graph.kind(unit.id) {
+            Kind::Profile => figure::make(self, graph, unit).map(|f| Entry::Figure(Arc::new(f))),
+            Kind::Solid if structure::operands(graph.node(unit.id)).is_some() => {
+                expression::make(self, graph, unit).map(Entry::Solid)
             }
             Kind::Solid => {
-                let solid = primitive::make(self, graph, id)?;
-                check_size(graph, id, solid.mesh().triangle_count())?;
+                let solid = primitive::make(self, graph, unit)?;
+                check_size(graph, unit.id, solid.mesh().triangle_count())?;
                 Ok(Entry::Solid(Solid::exact(solid)))
             }
         }
@@ -134,8 +150,16 @@ impl<'w> Realizer<'w> {
     /// # Panics
     /// When the node is a profile.
     pub fn solid(&self, graph: &ShapeGraph, id: ShapeId) -> Made<Solid> {
-        self.realize(graph, &[id]);
-        self.solid_made(graph, id)
+        self.solid_under(graph, Stretched { id, stretch: Stretch::ONE })
+    }
+
+    /// The solid of a node, as fine as it must be to be stretched.
+    ///
+    /// # Panics
+    /// When the node is a profile.
+    pub fn solid_under(&self, graph: &ShapeGraph, shape: Stretched) -> Made<Solid> {
+        self.realize_units(graph, structure::unit_of(graph, shape.id, shape.stretch));
+        self.solid_made(graph, shape.id, shape.stretch)
     }
 
     /// The figure of a profile node.
@@ -143,37 +167,47 @@ impl<'w> Realizer<'w> {
     /// # Panics
     /// When the node is a solid.
     pub fn figure(&self, graph: &ShapeGraph, id: ShapeId) -> Made<Arc<Figure>> {
-        self.realize(graph, &[id]);
-        self.figure_made(id)
+        self.figure_under(graph, Stretched { id, stretch: Stretch::ONE })
+    }
+
+    /// The figure of a profile node, as fine as it must be to be stretched.
+    ///
+    /// # Panics
+    /// When the node is a solid.
+    pub fn figure_under(&self, graph: &ShapeGraph, shape: Stretched) -> Made<Arc<Figure>> {
+        let unit = graph.stretched(shape.id, shape.stretch);
+        self.realize_units(graph, [unit]);
+        self.figure_made(unit)
     }
 
     /// The figure of a profile whose entry is made.
-    fn figure_made(&self, id: ShapeId) -> Made<Arc<Figure>> {
-        match self.entries.get(&id).expect("planned before")? {
+    fn figure_made(&self, unit: Stretched) -> Made<Arc<Figure>> {
+        match self.entries.get(&unit).expect("planned before")? {
             Entry::Figure(figure) => Ok(figure),
-            Entry::Solid(_) => panic!("{id:?} is a solid"),
+            Entry::Solid(_) => panic!("{unit:?} is a solid"),
         }
     }
 
-    /// The solid of a node whose core is made: placed, tagged and painted.
-    fn solid_made(&self, graph: &ShapeGraph, id: ShapeId) -> Made<Solid> {
+    /// The solid of a node whose unit under a stretch is made: placed, tagged and painted.
+    fn solid_made(&self, graph: &ShapeGraph, id: ShapeId, outer: Stretch) -> Made<Solid> {
         let wrapped = unwrap(graph, id, Paint::default())?;
-        let mut solid = self.core_made(wrapped.core)?;
+        let mut solid = self.unit_made(structure::placed(graph, &wrapped, outer))?;
         if !wrapped.paint.is_none() {
             let mesh = wrapped.paint.applied(solid.polyhedron.mesh());
             solid.polyhedron = Arc::new(Polyhedron::trusted(mesh));
         }
         if !wrapped.placement.is_identity() {
             solid.polyhedron = Arc::new(solid.polyhedron.placed(&wrapped.placement));
+            solid.snap *= Stretch::of(wrapped.placement.linear()).factor();
         }
         Ok(solid)
     }
 
-    /// The solid of a core that is made.
-    fn core_made(&self, core: ShapeId) -> Made<Solid> {
-        match self.entries.get(&core).expect("planned before")? {
+    /// The solid of a unit that is made.
+    fn unit_made(&self, unit: Stretched) -> Made<Solid> {
+        match self.entries.get(&unit).expect("planned before")? {
             Entry::Solid(solid) => Ok(solid),
-            Entry::Figure(_) => panic!("{core:?} is a profile"),
+            Entry::Figure(_) => panic!("{unit:?} is a profile"),
         }
     }
 

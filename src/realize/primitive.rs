@@ -20,7 +20,7 @@ use crate::{
         primitive,
         revolve::{RevolveError, revolve},
     },
-    shape::{Kind, Node, ShapeGraph, ShapeId},
+    shape::{Kind, Node, ShapeGraph, ShapeId, Stretched},
 };
 
 /// Points that one hull may be made of: about half a gigabyte while it is.
@@ -51,9 +51,13 @@ impl Coded for HullError {
 }
 
 /// Makes the solid of a node that is no set operation and whose parts are made.
-pub fn make(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Made<Polyhedron> {
+pub fn make(realizer: &Realizer, graph: &ShapeGraph, unit: Stretched) -> Made<Polyhedron> {
+    let id = unit.id;
     let origin = graph.origin(id);
-    let tolerance = realizer.tolerance();
+    let tolerance = realizer.tolerance_of(unit);
+    let figure_of = |profile: ShapeId| realizer.figure_made(graph.part(unit, profile));
+    let bent =
+        |profile: ShapeId| figure::bent(realizer, graph, graph.part(unit, profile), tolerance);
     match graph.node(id) {
         Node::Box { min, max } => Ok(primitive::cuboid(*min, *max)),
         Node::Cone { r1, r2, h, sides } => {
@@ -75,16 +79,16 @@ pub fn make(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Made<Polyhe
         Node::Polyhedron { points, faces } => faces::polyhedron(points, faces).at(origin),
         Node::Extrude { profile, height, twist, scale } => {
             let (figure, tolerance) = match *twist {
-                0.0 => (realizer.figure_made(*profile)?, tolerance),
-                _ => figure::bent(realizer, graph, *profile)?,
+                0.0 => (figure_of(*profile)?, tolerance),
+                _ => bent(*profile)?,
             };
             let solid = extrude(&figure.region, *height, *twist, *scale, tolerance).at(origin)?;
             Ok(painted(solid, &figure.paint).placed(&figure.frame))
         }
         Node::Revolve { profile, angle, sides } => {
             let (figure, tolerance) = match sides {
-                Some(_) => (realizer.figure_made(*profile)?, tolerance),
-                None => figure::bent(realizer, graph, *profile)?,
+                Some(_) => (figure_of(*profile)?, tolerance),
+                None => bent(*profile)?,
             };
             let region = upright(&figure);
             let solid = revolve(&region, *angle, *sides, tolerance).at(origin)?;
@@ -93,7 +97,8 @@ pub fn make(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Made<Polyhe
         Node::Hull(list) => {
             let mut points: Vec<DVec3> = vec![];
             for &child in list.iter() {
-                points.extend(&realizer.solid_made(graph, child)?.polyhedron.mesh().points);
+                let made = realizer.solid_made(graph, child, unit.stretch)?;
+                points.extend(&made.polyhedron.mesh().points);
                 if points.len() > MOST_HULL_POINTS {
                     let words = format!("a hull of more than {MOST_HULL_POINTS} points");
                     let error = Diagnostic::error(Code::Limit, words).label(origin, "");

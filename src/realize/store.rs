@@ -1,11 +1,11 @@
-//! What was made, by node.
+//! What was made, by node and stretch.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use rustc_hash::FxHashMap;
 
 use super::{failure::Made, figure::Figure};
-use crate::{kernel::brep::Polyhedron, shape::ShapeId};
+use crate::{kernel::brep::Polyhedron, shape::Stretched};
 
 /// A solid and how far rounding moved it.
 #[derive(Clone, PartialEq, Debug)]
@@ -69,4 +69,4 @@ impl<K: Eq + std::hash::Hash, V: Clone> Store<K, V> {
 }
 
 /// Everything made for one graph.
-pub type Entries = Store<ShapeId, Made<Entry>>;
+pub type Entries = Store<Stretched, Made<Entry>>;

@@ -1,15 +1,24 @@
 //! What the graph alone says about the work: which nodes are made into solids of their own, and in
 //! which order.
 //!
-//! A *core* is a node under its placements, tags and colours. The unit of work is a core. Operands of
+//! A *core* is a node under its placements, tags and colours. The unit of work is a core under a stretch:
+//! what placements, and the growing of an extrusion, do to its lengths on the way to the output. A core
+//! without curves is one unit under all stretches, and so is any core under all rigid motions. Operands of
 //! a set operation that are set operations themselves are taken into one expression, so that a whole
 //! subtree is evaluated at once. An inner operation is made first, once, where an operation takes many
 //! copies of it, and where the expression would grow too large or too deep. What is made first depends
 //! on the operation alone, not on who else asks for its parts.
 
-use rustc_hash::FxHashSet;
+use std::collections::BTreeMap;
 
-use crate::shape::{Kind, Node, ShapeGraph, ShapeId};
+use glam::DMat3;
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::{Unwrapped, paint::Paint, unwrap};
+use crate::{
+    geom::Stretch,
+    shape::{Kind, Node, ShapeGraph, ShapeId, Stretched},
+};
 
 /// Leaves of one set expression. A graph shares nodes, an expression does not: `a + a.move(..)`
 /// repeated twenty times has a million leaves. Above this bound inner operations are made first.
@@ -116,27 +125,36 @@ impl Structure {
     }
 
     /// The units that must be made before a unit.
-    pub fn needs(&self, graph: &ShapeGraph, unit: ShapeId) -> Vec<ShapeId> {
-        match graph.node(unit) {
-            node if graph.kind(unit) == Kind::Profile => figure_parts(node),
-            Node::Extrude { profile, .. } | Node::Revolve { profile, .. } => vec![*profile],
-            Node::Hull(list) => list.iter().map(|&child| self.core(child)).collect(),
+    fn needs(&self, graph: &ShapeGraph, unit: Stretched) -> Vec<Stretched> {
+        match graph.node(unit.id) {
+            Node::Extrude { .. } | Node::Revolve { .. } => figure_parts(graph, unit),
+            _ if graph.kind(unit.id) == Kind::Profile => figure_parts(graph, unit),
+            Node::Hull(list) => {
+                list.iter().filter_map(|&child| unit_of(graph, child, unit.stretch)).collect()
+            }
             _ => self.expression_leaves(graph, unit),
         }
     }
 
-    fn expression_leaves(&self, graph: &ShapeGraph, unit: ShapeId) -> Vec<ShapeId> {
+    fn expression_leaves(&self, graph: &ShapeGraph, unit: Stretched) -> Vec<Stretched> {
         let mut found = vec![];
         let mut seen = FxHashSet::default();
-        let mut open = vec![unit];
-        while let Some(operation) = open.pop() {
+        let mut open = vec![(unit.id, DMat3::IDENTITY)];
+        while let Some((operation, outer)) = open.pop() {
             for &child in operands(graph.node(operation)).unwrap_or_default() {
-                let core = self.core(child);
-                if !seen.insert(core) {
+                let Ok(inner) = unwrap(graph, child, Paint::default()) else { continue };
+                let Unwrapped { core, placement, .. } = inner;
+                let linear = match graph.is_curved(core) {
+                    true => outer * placement.linear(),
+                    false => DMat3::IDENTITY,
+                };
+                if !seen.insert((core, linear.to_cols_array().map(f64::to_bits))) {
                     continue;
                 }
-                let list = if self.takes_in(operation, core) { &mut open } else { &mut found };
-                list.push(core);
+                match self.takes_in(operation, core) {
+                    true => open.push((core, linear)),
+                    false => found.push(leaf(graph, unit, core, linear)),
+                }
             }
         }
         found
@@ -147,11 +165,11 @@ impl Structure {
     pub fn plan(
         &self,
         graph: &ShapeGraph,
-        roots: &[ShapeId],
-        made: impl Fn(ShapeId) -> bool,
-    ) -> Vec<Vec<ShapeId>> {
-        let mut needs = std::collections::BTreeMap::new();
-        let mut open: Vec<ShapeId> = roots.iter().map(|&root| self.core(root)).collect();
+        roots: impl IntoIterator<Item = Stretched>,
+        made: impl Fn(Stretched) -> bool,
+    ) -> Vec<Vec<Stretched>> {
+        let mut needs = BTreeMap::new();
+        let mut open: Vec<Stretched> = roots.into_iter().collect();
         while let Some(unit) = open.pop() {
             if !made(unit) && !needs.contains_key(&unit) {
                 let list = self.needs(graph, unit);
@@ -159,8 +177,8 @@ impl Structure {
                 needs.insert(unit, list);
             }
         }
-        let mut levels = rustc_hash::FxHashMap::default();
-        let mut waves: Vec<Vec<ShapeId>> = vec![];
+        let mut levels = FxHashMap::default();
+        let mut waves: Vec<Vec<Stretched>> = vec![];
         for (&unit, list) in &needs {
             let level =
                 list.iter().filter_map(|n| levels.get(n)).max().map_or(0, |l: &usize| l + 1);
@@ -172,16 +190,29 @@ impl Structure {
     }
 }
 
-/// The profiles a profile is made from.
-pub fn figure_parts(node: &Node) -> Vec<ShapeId> {
-    match node {
-        Node::Union(list)
-        | Node::Difference(list)
-        | Node::Intersection(list)
-        | Node::Hull(list) => list.to_vec(),
-        Node::OffsetProfile { profile, .. } | Node::RoundProfile { profile, .. } => vec![*profile],
-        node => wrapped(node).into_iter().collect(),
+/// The unit that a solid is made of under a stretch; `None` where a placement flattens it. A profile is its
+/// own unit.
+pub fn unit_of(graph: &ShapeGraph, id: ShapeId, outer: Stretch) -> Option<Stretched> {
+    if graph.kind(id) == Kind::Profile {
+        return Some(graph.stretched(id, outer));
     }
+    let found = unwrap(graph, id, Paint::default()).ok()?;
+    Some(placed(graph, &found, outer))
+}
+
+/// The unit of a solid that was taken out of its wrappers, under a stretch.
+pub fn placed(graph: &ShapeGraph, found: &Unwrapped, outer: Stretch) -> Stretched {
+    graph.stretched(found.core, outer.times(Stretch::of(found.placement.linear())))
+}
+
+/// The unit of a leaf of a set expression, with the linear part of its way to the expression's frame.
+pub fn leaf(graph: &ShapeGraph, expression: Stretched, core: ShapeId, linear: DMat3) -> Stretched {
+    graph.stretched(core, expression.stretch.times(Stretch::of(linear)))
+}
+
+/// The profiles that a profile, an extrusion or a revolution is made from.
+pub fn figure_parts(graph: &ShapeGraph, whole: Stretched) -> Vec<Stretched> {
+    graph.node(whole.id).children().iter().map(|&child| graph.part(whole, child)).collect()
 }
 
 #[cfg(test)]
@@ -195,6 +226,10 @@ mod tests {
 
     fn add(graph: &mut ShapeGraph, node: Node) -> ShapeId {
         graph.add(node, Span::default())
+    }
+
+    fn as_is(id: ShapeId) -> Stretched {
+        Stretched { id, stretch: Stretch::ONE }
     }
 
     fn doubled(graph: &mut ShapeGraph, child: ShapeId, step: f64) -> ShapeId {
@@ -211,8 +246,14 @@ mod tests {
         let four = doubled(&mut graph, two, 2.0);
         let mut structure = Structure::default();
         structure.extend(&graph);
-        assert_eq!(structure.plan(&graph, &[four], |_| false), [vec![ball], vec![four]]);
-        assert_eq!(structure.plan(&graph, &[four], |id| id == ball), [vec![four]]);
+        assert_eq!(
+            structure.plan(&graph, [as_is(four)], |_| false),
+            [vec![as_is(ball)], vec![as_is(four)]]
+        );
+        assert_eq!(
+            structure.plan(&graph, [as_is(four)], |unit| unit.id == ball),
+            [vec![as_is(four)]]
+        );
     }
 
     #[test]
@@ -228,8 +269,8 @@ mod tests {
         let all = add(&mut graph, Node::Union(Arc::from(copies)));
         let mut structure = Structure::default();
         structure.extend(&graph);
-        let waves = structure.plan(&graph, &[all], |_| false);
-        assert_eq!(waves, [vec![ball], vec![pair], vec![all]]);
+        let waves = structure.plan(&graph, [as_is(all)], |_| false);
+        assert_eq!(waves, [ball, pair, all].map(|id| vec![as_is(id)]));
     }
 
     #[test]
@@ -241,7 +282,67 @@ mod tests {
         }
         let mut structure = Structure::default();
         structure.extend(&graph);
-        let waves = structure.plan(&graph, &[shape], |_| false);
+        let waves = structure.plan(&graph, [as_is(shape)], |_| false);
         assert!(waves.len() > 2 && waves.iter().flatten().count() < 10);
+    }
+
+    fn scaled(graph: &mut ShapeGraph, child: ShapeId, sizes: DVec3) -> ShapeId {
+        let placement = Placement::new(DMat3::from_diagonal(sizes), DVec3::ZERO);
+        add(graph, Node::Transform { placement, child })
+    }
+
+    /// The stretches that a leaf is made for.
+    fn stretches(graph: &ShapeGraph, root: ShapeId, leaf: ShapeId) -> Vec<f64> {
+        let mut structure = Structure::default();
+        structure.extend(graph);
+        let waves = structure.plan(graph, unit_of(graph, root, Stretch::ONE), |_| false);
+        let units = waves.into_iter().flatten().filter(|unit| unit.id == leaf);
+        units.map(|unit| unit.stretch.factor()).collect()
+    }
+
+    #[test]
+    fn a_leaf_is_made_once_for_each_stretch() {
+        let mut graph = ShapeGraph::default();
+        let sizes = [DVec3::ONE, -DVec3::ONE, DVec3::splat(4.0), DVec3::new(0.5, 4.0, 1.0)];
+        for (sides, expected) in [(None, vec![2.0, 8.0]), (Some(9), vec![1.0])] {
+            let ball = add(&mut graph, Node::Sphere { r: 1.0, sides });
+            let copies = sizes.map(|sizes| scaled(&mut graph, ball, sizes));
+            let all = add(&mut graph, Node::Union(Arc::new(copies)));
+            let whole = scaled(&mut graph, all, DVec3::splat(2.0));
+            assert_eq!(stretches(&graph, whole, ball), expected);
+        }
+    }
+
+    #[test]
+    fn what_lies_level_is_not_stretched_upwards() {
+        let mut graph = ShapeGraph::default();
+        let circle = add(&mut graph, Node::Ellipse { radii: glam::DVec2::ONE, sides: None });
+        let profile = scaled(&mut graph, circle, DVec3::new(0.5, 0.25, 1.0));
+        let scale = glam::DVec2::new(3.0, 1.0);
+        let solid = add(&mut graph, Node::Extrude { profile, height: 1.0, twist: 0.0, scale });
+        assert_eq!(stretches(&graph, solid, circle), [1.5]);
+    }
+
+    /// Two copies of different size in every step, and no two steps alike.
+    #[test]
+    fn growth_through_scales_stays_bounded() {
+        let mut graph = ShapeGraph::default();
+        let ball = add(&mut graph, Node::Sphere { r: 1.0, sides: None });
+        let disc = add(&mut graph, Node::Ellipse { radii: glam::DVec2::ONE, sides: None });
+        type Make = fn(Arc<[ShapeId]>) -> Node;
+        let makers: [(ShapeId, Make); 3] =
+            [(ball, Node::Union), (ball, Node::Hull), (disc, Node::Union)];
+        for (mut shape, make) in makers {
+            for i in 0..30 {
+                let sizes = [0.9 + 0.001 * f64::from(i), 1.0 + 0.0017 * f64::from(i)];
+                let copies = sizes.map(|size| scaled(&mut graph, shape, DVec3::splat(size)));
+                shape = add(&mut graph, make(Arc::new(copies)));
+            }
+            let mut structure = Structure::default();
+            structure.extend(&graph);
+            let waves = structure.plan(&graph, [as_is(shape)], |_| false);
+            let units = waves.iter().flatten().count();
+            assert!(units < 100_000, "{units}");
+        }
     }
 }

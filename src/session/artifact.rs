@@ -8,6 +8,7 @@ use super::{
 };
 use crate::{
     base::{Code, Diagnostic, Span},
+    eval::Product,
     geom::{PolyMesh, Region},
     output::{
         mesh::{self, MeshFormat, NamedMesh},
@@ -15,7 +16,7 @@ use crate::{
         sheet::{self, DrawingFormat, Page},
     },
     realize::Realizer,
-    shape::{PageSpec, ShapeGraph, ShapeId, ViewSpec},
+    shape::{PageSpec, ShapeGraph, ShapeId, Stretched, ViewSpec},
 };
 
 /// What a file is written as.
@@ -127,6 +128,16 @@ pub enum PaperKind {
     Sheet(Arc<PageSpec>),
 }
 
+impl PaperKind {
+    /// The output it comes from.
+    pub fn product(&self) -> Product {
+        match self {
+            PaperKind::View(view) => Product::View(view.clone()),
+            PaperKind::Sheet(page) => Product::Sheet(page.clone()),
+        }
+    }
+}
+
 /// What is in a file.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Content {
@@ -169,14 +180,6 @@ impl Artifact {
         match &self.content {
             Content::Solids(parts) => parts,
             Content::Paper(_) => &[],
-        }
-    }
-
-    /// What it puts on paper.
-    pub fn paper(&self) -> Option<PaperKind> {
-        match &self.content {
-            Content::Solids(_) => None,
-            Content::Paper(paper) => Some(paper.kind.clone()),
         }
     }
 
@@ -265,12 +268,12 @@ struct Shapes<'a> {
 }
 
 impl scad::Realized for Shapes<'_> {
-    fn mesh(&self, shape: ShapeId) -> Option<PolyMesh> {
-        Some(self.realizer.solid(self.graph, shape).ok()?.polyhedron.mesh().clone())
+    fn mesh(&self, shape: Stretched) -> Option<PolyMesh> {
+        Some(self.realizer.solid_under(self.graph, shape).ok()?.polyhedron.mesh().clone())
     }
 
-    fn region(&self, shape: ShapeId) -> Option<Region> {
-        Some(self.realizer.figure(self.graph, shape).ok()?.region.clone())
+    fn region(&self, shape: Stretched) -> Option<Region> {
+        Some(self.realizer.figure_under(self.graph, shape).ok()?.region.clone())
     }
 }
 

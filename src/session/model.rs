@@ -13,8 +13,8 @@ use super::{
 use crate::{
     base::{Code, Diagnostic, Phase, watch::during},
     eval::{
-        Evaluator, ExportInfo, InstanceId, Limits, OutputInfo, ParamInfo, Product, TestInfo,
-        TestOutcome, Write, nearest,
+        Evaluator, ExportInfo, ExportPart, InstanceId, Limits, OutputInfo, ParamInfo, Product,
+        TestInfo, TestOutcome, Write, nearest,
     },
     realize,
     shape::{
@@ -196,32 +196,36 @@ impl<'s> Model<'s> {
     /// writes. A format given here writes the outputs alone, each as `<name>.<extension>`: parts where it
     /// holds solids, views and sheets where it holds drawings, the others as they are otherwise. What
     /// [`check`](Model::check) finds is among the diagnostics.
+    ///
+    /// An export writes the outputs that it names, alone or as fields of its record. Where it has an
+    /// expression, it writes the output that is this very shape, if there is just one among those asked
+    /// for.
     pub fn artifacts(
         &mut self,
         names: &[String],
         format: Option<Format>,
         diagnostics: &mut Vec<Diagnostic>,
     ) -> Vec<Artifact> {
-        let (parts, papers) = self.products(names, diagnostics);
+        let (mut parts, mut papers) = self.products(names, diagnostics);
         let mut artifacts = vec![];
         if format.is_none() {
-            artifacts = self.exports(names, (&parts, &papers), diagnostics);
+            let written: Vec<String>;
+            let shapes = parts.iter().map(|p| (p.name.clone(), Product::Shape(p.shape)));
+            let drawn = papers.iter().map(|p| (p.name.clone(), p.kind.product()));
+            let outputs: Vec<(String, Product)> = shapes.chain(drawn).collect();
+            (artifacts, written) = self.exports(names, &outputs, diagnostics);
+            parts.retain(|part| !written.contains(&part.name));
+            papers.retain(|paper| !written.contains(&paper.name));
         }
         diagnostics.extend(self.check(names));
-        let exported: Vec<ShapeId> =
-            artifacts.iter().flat_map(|a| a.parts().iter().map(|part| part.shape)).collect();
-        let on_paper: Vec<PaperKind> = artifacts.iter().filter_map(Artifact::paper).collect();
         let of_parts = format.filter(|format| !format.is_drawing()).unwrap_or(Format::STL);
         let of_paper = format.filter(|format| format.is_drawing()).unwrap_or(Format::SVG);
-        for part in parts.into_iter().filter(|part| !exported.contains(&part.shape)) {
+        for part in parts {
             let file = format!("{}.{}", part.name, of_parts.extension());
-            artifacts.push(Artifact {
-                file,
-                format: of_parts,
-                content: Content::Solids(vec![part]),
-            });
+            let content = Content::Solids(vec![part]);
+            artifacts.push(Artifact { file, format: of_parts, content });
         }
-        for paper in papers.into_iter().filter(|paper| !on_paper.contains(&paper.kind)) {
+        for paper in papers {
             let file = format!("{}.{}", paper.name, of_paper.extension());
             artifacts.push(Artifact { file, format: of_paper, content: Content::Paper(paper) });
         }
@@ -230,39 +234,41 @@ impl<'s> Model<'s> {
         artifacts
     }
 
+    /// The files of the exports, and the names of the outputs that these write.
     fn exports(
         &mut self,
         names: &[String],
-        (parts, papers): (&[Part], &[Paper]),
+        outputs: &[(String, Product)],
         diagnostics: &mut Vec<Diagnostic>,
-    ) -> Vec<Artifact> {
-        let Some(instance) = self.instance else { return vec![] };
-        let mut artifacts = vec![];
+    ) -> (Vec<Artifact>, Vec<String>) {
+        let (mut artifacts, mut written) = (vec![], vec![]);
+        let Some(instance) = self.instance else { return (artifacts, written) };
         for (index, export) in self.evaluator.exports(instance).into_iter().enumerate() {
-            let products = during(self.session.watch, Phase::Eval, || {
+            let parts = during(self.session.watch, Phase::Eval, || {
                 self.evaluator.export_products(instance, index)
             });
             diagnostics.extend(self.evaluator.take_diagnostics());
-            let Ok(products) = products else { continue };
-            let chosen = |(_, product): &(String, Product)| match paper_kind(product) {
-                Ok(kind) => papers.iter().any(|paper| paper.kind == kind),
-                Err(shape) => parts.iter().any(|part| part.shape == shape),
-            };
-            if !names.is_empty() && !products.iter().all(chosen) {
+            let Ok(parts) = parts else { continue };
+            let found: Vec<Option<&str>> = parts.iter().map(|p| output_of(p, outputs)).collect();
+            if !names.is_empty() && found.contains(&None) {
                 continue;
             }
-            match self.export(&export, products) {
-                Ok(found) => artifacts.extend(found),
+            match self.export(&export, parts) {
+                Ok(files) if !files.is_empty() => {
+                    artifacts.extend(files);
+                    written.extend(found.into_iter().flatten().map(str::to_string));
+                }
+                Ok(_) => {}
                 Err(diagnostic) => diagnostics.push(diagnostic),
             }
         }
-        artifacts
+        (artifacts, written)
     }
 
     fn export(
         &self,
         export: &ExportInfo,
-        products: Vec<(String, Product)>,
+        products: Vec<ExportPart>,
     ) -> Result<Vec<Artifact>, Diagnostic> {
         let Some(file) = &export.file else { return Ok(vec![]) };
         let format = Format::of_file(file).ok_or_else(|| {
@@ -272,7 +278,7 @@ impl<'s> Model<'s> {
                 .help(format!("end the name with one of {}", Format::extensions()))
         })?;
         let (mut parts, mut papers) = (vec![], vec![]);
-        for (name, product) in products {
+        for ExportPart { name, product, .. } in products {
             let span = export.span;
             let suits = matches!(product, Product::Shape(_)) != format.is_drawing();
             if !suits {
@@ -436,4 +442,14 @@ fn drawings(file: &str, format: Format, papers: Vec<Paper>) -> Vec<Artifact> {
         Artifact { file, format, content: Content::Paper(paper) }
     };
     papers.into_iter().map(artifact).collect()
+}
+
+/// The output that an export writes with one of its parts: the one it names, else the only one that is the same.
+fn output_of<'a>(part: &ExportPart, outputs: &'a [(String, Product)]) -> Option<&'a str> {
+    if let Some(name) = &part.output {
+        return outputs.iter().map(|(known, _)| &**known).find(|known| *known == &**name);
+    }
+    let mut same = outputs.iter().filter(|(_, product)| *product == part.product);
+    let first = same.next();
+    first.filter(|_| same.next().is_none()).map(|(name, _)| &**name)
 }

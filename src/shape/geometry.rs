@@ -119,8 +119,8 @@ pub trait Geometry {
         point: DVec3,
     ) -> Result<f64, GeometryError>;
 
-    /// Distance in mm between two solids; negative (the depth of the deepest point of one inside the
-    /// other's boundary) when they overlap.
+    /// Distance in mm between two solids; negative (the depth of the deepest point) where a part of the
+    /// boundary of one lies inside the other, 0 where they touch or are the same.
     fn distance(&self, graph: &ShapeGraph, a: ShapeId, b: ShapeId) -> Result<f64, GeometryError>;
 
     /// Hausdorff distance of the boundaries in mm.

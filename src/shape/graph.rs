@@ -5,8 +5,17 @@ use rustc_hash::FxHashMap;
 use super::{
     fingerprint::fingerprint,
     node::{Kind, Node, ShapeId},
+    stretched,
 };
 use crate::base::Span;
+
+/// What is known of a node before it is made.
+#[derive(Clone, Copy, Debug)]
+struct Facts {
+    kind: Kind,
+    curves: u32,
+    level: bool,
+}
 
 /// All shapes of one evaluation.
 ///
@@ -23,7 +32,7 @@ use crate::base::Span;
 pub struct ShapeGraph {
     nodes: Vec<Node>,
     origins: Vec<Span>,
-    kinds: Vec<Kind>,
+    facts: Vec<Facts>,
     /// By fingerprint; nodes whose fingerprints collide stand at the next free numbers.
     index: FxHashMap<u64, ShapeId>,
 }
@@ -42,11 +51,15 @@ impl ShapeGraph {
             }
             key = key.wrapping_add(1);
         }
-        let kind = self.kind_of(&node);
+        let facts = Facts {
+            kind: self.kind_of(&node),
+            curves: stretched::curves(&node, |child| self.curves(child)),
+            level: stretched::level(&node, |child| self.is_level(child)),
+        };
         let id = ShapeId(self.nodes.len() as u32);
         self.nodes.push(node);
         self.origins.push(origin);
-        self.kinds.push(kind);
+        self.facts.push(facts);
         self.index.insert(key, id);
         id
     }
@@ -63,7 +76,17 @@ impl ShapeGraph {
 
     /// Whether it is a solid or a profile.
     pub fn kind(&self, id: ShapeId) -> Kind {
-        self.kinds[id.0 as usize]
+        self.facts[id.0 as usize].kind
+    }
+
+    /// How many things made with the tolerance are in it.
+    pub(super) fn curves(&self, id: ShapeId) -> u32 {
+        self.facts[id.0 as usize].curves
+    }
+
+    /// Whether nothing in it is taken out of planes parallel to xy.
+    pub(super) fn is_level(&self, id: ShapeId) -> bool {
+        self.facts[id.0 as usize].level
     }
 
     /// The number of nodes.

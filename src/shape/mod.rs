@@ -8,8 +8,10 @@ mod fingerprint;
 pub mod geometry;
 pub mod graph;
 pub mod node;
+mod stretched;
 
 pub use drawing::{CurveSpec, PageSpec, ViewSpec};
 pub use geometry::{Geometry, GeometryError, Measures};
 pub use graph::ShapeGraph;
 pub use node::{Kind, Node, ShapeId};
+pub use stretched::Stretched;

@@ -213,3 +213,23 @@ pub enum Node {
         child: ShapeId,
     },
 }
+
+impl Node {
+    /// The shapes it is made of.
+    pub fn children(&self) -> &[ShapeId] {
+        match self {
+            Node::Union(list)
+            | Node::Difference(list)
+            | Node::Intersection(list)
+            | Node::Hull(list) => list,
+            Node::Extrude { profile: child, .. }
+            | Node::Revolve { profile: child, .. }
+            | Node::OffsetProfile { profile: child, .. }
+            | Node::RoundProfile { profile: child, .. }
+            | Node::Transform { child, .. }
+            | Node::Tag { child, .. }
+            | Node::Paint { child, .. } => std::slice::from_ref(child),
+            _ => &[],
+        }
+    }
+}

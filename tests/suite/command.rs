@@ -195,6 +195,29 @@ fn what_cannot_be_written_is_said_and_the_rest_is_written() {
 }
 
 #[test]
+fn an_export_writes_the_outputs_that_it_names() {
+    let built = |text: &str, chosen: &[&str]| {
+        let folder = folder(&[("m.kata", text)]);
+        let output = run(folder.path(), &[&["build", "m.kata"], chosen].concat());
+        assert_eq!(code(&output), 0, "{text}: {}", err(&output));
+        names(&folder.path().join("out"))
+    };
+    let twins = "w = box(1, 1, 1)\npart a = w\npart b = w\n";
+    let with = |export: &str| format!("{twins}export {export}");
+    assert_eq!(built(&with("\"a.3mf\" = a"), &[]), ["a.3mf", "b.stl"]);
+    assert_eq!(built(&with("\"a.3mf\" = a"), &["-p", "b"]), ["b.stl"]);
+    assert_eq!(built(&with("\"a.3mf\" = a"), &["-p", "a"]), ["a.3mf"]);
+    assert_eq!(built(&with("\"e.3mf\" = { a, b }"), &[]), ["e.3mf"]);
+    assert_eq!(built(&with("\"e.3mf\" = { lid = b, hat = w }"), &[]), ["a.stl", "e.3mf"]);
+    assert_eq!(built(&with("\"e.3mf\" = { a, b }"), &["-p", "a"]), ["a.stl"]);
+    assert_eq!(built(&with("\"e.3mf\" = w"), &[]), ["a.stl", "b.stl", "e.3mf"]);
+    let one = "w = box(1, 1, 1)\npart a = w\nexport \"e.3mf\" = w";
+    assert_eq!(built(one, &[]), ["e.3mf"]);
+    let sum = "part a = box(1, 1, 1)\npart b = box(2, 1, 1)\nexport \"e.3mf\" = a + b";
+    assert_eq!(built(sum, &[]), ["a.stl", "b.stl", "e.3mf"]);
+}
+
+#[test]
 fn exports_stay_in_the_output_folder_and_have_a_known_format() {
     let text = "part a = box(1, 1, 1)\nexport \"../a.stl\" = a\nexport \"a.step\" = a\nexport \"in/a.obj\" = a";
     let folder = folder(&[("m.kata", text)]);
@@ -350,6 +373,25 @@ fn large_stl(n: u32) -> Vec<u8> {
         bytes.extend([0; 2]);
     }
     bytes
+}
+
+#[test]
+fn triangles_of_a_large_stl_may_come_in_any_order() {
+    let ordered = large_stl(110);
+    let mut mixed = ordered[..84].to_vec();
+    let records: Vec<&[u8]> = ordered[84..].chunks_exact(50).collect();
+    let places = (0..records.len()).map(|i| i * 7919 % records.len());
+    places.for_each(|place| mixed.extend(records[place]));
+    let folder = folder(&[("m.kata", "part a = import(\"a.stl\")\npart b = import(\"b.stl\")")]);
+    fs::write(folder.path().join("a.stl"), ordered).expect("writable");
+    fs::write(folder.path().join("b.stl"), mixed).expect("writable");
+    let output = run(folder.path(), &["measure", "m.kata", "--json"]);
+    assert_eq!(code(&output), 0, "{}", err(&output));
+    let parts = &serde_json::from_slice::<Value>(&output.stdout).expect("JSON")["parts"];
+    for key in ["volume", "area", "bbox", "triangles", "euler", "shells"] {
+        assert_eq!(parts["a"][key], parts["b"][key], "{key}");
+    }
+    assert_eq!(parts["a"]["volume"], 110f64.powi(3));
 }
 
 #[test]

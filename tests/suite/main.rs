@@ -1,5 +1,6 @@
 //! One test binary for everything that is tested from outside.
 
+mod broken;
 mod command;
 mod drawing;
 mod errors;
@@ -18,3 +19,4 @@ mod regressions;
 mod scad;
 mod sheets;
 mod sources;
+mod stretch;

@@ -195,6 +195,46 @@ fn dxf_outlines_are_joined_and_blocks_placed() {
     assert!(figure.region.pieces[0].holes[0].curves.iter().all(round));
 }
 
+/// The area of a drawing, or why it is not read.
+fn drawn(name: &str, text: &str) -> Result<f64, String> {
+    let figure = read_profile(name, text.as_bytes(), Tolerance::DEFAULT);
+    figure.map(|figure| figure.region.area()).map_err(|error| error.to_string())
+}
+
+#[test]
+fn curves_that_need_too_many_chords_are_refused() {
+    let entities = |words: &str| dxf(&format!("0 SECTION 2 ENTITIES {words} 0 ENDSEC 0 EOF"));
+    let large = [
+        entities("0 CIRCLE 10 0 20 0 40 1e8"),
+        entities("0 ELLIPSE 10 0 20 0 11 1e8 21 0 40 0.5"),
+        entities("0 LWPOLYLINE 70 1 10 0 20 0 42 1 10 1e8 20 0"),
+        entities(
+            "0 SPLINE 71 2 70 1 40 0 40 0 40 0 40 1 40 1 40 1 10 0 20 0 10 1e9 20 2e9 10 2e9 20 0",
+        ),
+        dxf("0 SECTION 2 BLOCKS 0 BLOCK 2 b 10 0 20 0 0 CIRCLE 10 0 20 0 40 1 0 ENDBLK 0 ENDSEC \
+             0 SECTION 2 ENTITIES 0 INSERT 2 b 10 0 20 0 41 1 42 1e8 0 ENDSEC 0 EOF"),
+    ];
+    for text in large {
+        let said = drawn("a.dxf", &text).expect_err(&text);
+        assert!(said.contains("chords at this tolerance is beyond the limit of"), "{said}");
+    }
+    let svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"9\" height=\"9\">\
+               <path d=\"M0 0 C0 1e10 1e10 2e10 1e10 0 z\"/></svg>";
+    let said = drawn("a.svg", svg).expect_err(svg);
+    assert!(said.starts_with("SVG: a curve of") && said.contains("limit of 16384"), "{said}");
+}
+
+/// A slice of a circle of a hundred kilometres: few chords, for it is nearly straight.
+#[test]
+fn a_small_part_of_a_large_circle_is_read() {
+    let text = dxf(
+        "0 SECTION 2 ENTITIES 0 LWPOLYLINE 70 1 10 0 20 0 42 0.001 10 1000 20 0 0 ENDSEC 0 EOF",
+    );
+    let (half, height) = (500.0, 0.5);
+    let area = drawn("a.dxf", &text).expect("read");
+    assert!((area - 4.0 / 3.0 * half * height).abs() < 0.05 * 1000.0, "{area}");
+}
+
 #[test]
 fn values_of_json_and_csv() {
     let Ok(Data::Record(fields)) = read_data("a.json", br#"{"b": [1, null], "a": "x"}"#) else {

@@ -14,7 +14,7 @@ use katachi::{
     },
     output::scad,
     shape::{
-        Kind, Node, ShapeGraph, ShapeId,
+        Kind, Node, ShapeGraph, ShapeId, Stretched,
         node::{HorizontalAlign, TextSpec, VerticalAlign},
     },
 };
@@ -60,7 +60,7 @@ impl Model {
 struct Fixed;
 
 impl scad::Realized for Fixed {
-    fn mesh(&self, _: ShapeId) -> Option<PolyMesh> {
+    fn mesh(&self, _: Stretched) -> Option<PolyMesh> {
         let corners = [dvec3(0., 0., 0.), dvec3(3., 0., 0.), dvec3(0., 4., 0.), dvec3(0., 0., 2.)];
         let mut mesh = PolyMesh::with_points(corners.to_vec());
         let origin = mesh.add_origin(Origin::of(Surface::Plane));
@@ -71,7 +71,7 @@ impl scad::Realized for Fixed {
         Some(mesh)
     }
 
-    fn region(&self, _: ShapeId) -> Option<Region> {
+    fn region(&self, _: Stretched) -> Option<Region> {
         let ring = |r: f64| vec![dvec2(-r, -r), dvec2(r, -r), dvec2(r, r), dvec2(-r, r)];
         let hole = ring(2.0).into_iter().rev().collect();
         let piece =

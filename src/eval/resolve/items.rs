@@ -285,31 +285,7 @@ impl Resolver<'_> {
     ) {
         let ((file, code), frame) = self.framed(|this| (this.text(file), this.expression(value)));
         let global = self.set_global(globals, code, frame) as u32;
-        let outputs = self.whole_outputs(code);
-        self.unit.exports.push(ExportCode { file, global, outputs });
-    }
-
-    /// The outputs that stand in an export by themselves or as a field or element of it.
-    fn whole_outputs(&self, code: CodeId) -> Vec<u32> {
-        use crate::eval::unit::RecordPart;
-        let parts: Vec<CodeId> = match &self.unit.code[code.0 as usize] {
-            Code::List(items) => items.to_vec(),
-            Code::Record(parts) => parts
-                .iter()
-                .map(|part| match part {
-                    RecordPart::Field(_, code) | RecordPart::Spread(code) => *code,
-                })
-                .collect(),
-            _ => vec![code],
-        };
-        let globals = parts.iter().filter_map(|part| match self.unit.code[part.0 as usize] {
-            Code::Global(global) => Some(global),
-            _ => None,
-        });
-        let is_output = |global: &u32| {
-            matches!(self.unit.globals[*global as usize].kind, GlobalKind::Output(_))
-        };
-        globals.filter(is_output).collect()
+        self.unit.exports.push(ExportCode { file, global });
     }
 
     fn test(&mut self, test: &ast::Test, span: base::Span) {

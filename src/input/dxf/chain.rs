@@ -42,7 +42,7 @@ impl Chain {
         let span = turn(to - from);
         let at =
             |degrees: f64| center + dvec2(trig::cos_deg(degrees), trig::sin_deg(degrees)) * radius;
-        Ok(swept(from, span, EdgeCurve::Circle { center, radius }, radius, fine, at))
+        swept(entity, (from, span), EdgeCurve::Circle { center, radius }, radius, fine, at)
     }
 
     /// An ELLIPSE, whole or part.
@@ -57,7 +57,7 @@ impl Chain {
         }
         let at =
             |degrees: f64| center + major * trig::cos_deg(degrees) + minor * trig::sin_deg(degrees);
-        Ok(swept(from, turn(to - from), EdgeCurve::Smooth(number), radius, fine, at))
+        swept(entity, (from, turn(to - from)), EdgeCurve::Smooth(number), radius, fine, at)
     }
 
     /// A polyline with bulges.
@@ -75,29 +75,31 @@ impl Chain {
                 break;
             }
             let next = vertices[if last { 0 } else { i + 1 }].0;
-            chain.bulge(p, next, bulge, fine);
+            chain.bulge(p, next, bulge, fine)?;
         }
         Ok(chain)
     }
 
     /// The edges of an arc from p to q that turns by four times the arc tangent of `bulge`.
-    fn bulge(&mut self, p: DVec2, q: DVec2, bulge: f64, fine: Tolerance) {
+    fn bulge(&mut self, p: DVec2, q: DVec2, bulge: f64, fine: Tolerance) -> Result<(), ReadError> {
         let height = (q - p).perp() * ((1.0 - bulge * bulge) / (4.0 * bulge));
         let center = p.midpoint(q) + height;
         let radius = center.distance(p);
         if bulge == 0.0 || p == q || !radius.is_finite() {
             self.curves.push(EdgeCurve::Line);
-            return;
+            return Ok(());
         }
         let angle = 4.0 * libm::atan(bulge);
         let circle = EdgeCurve::Circle { center, radius };
         let chords = flatten::arc_chords(radius, angle, fine);
+        DXF.chords("a bulge", chords)?;
         for i in 1..chords {
             let degrees = angle.to_degrees() * f64::from(i) / f64::from(chords);
             let turn = dvec2(trig::cos_deg(degrees), trig::sin_deg(degrees));
             self.points.push(center + turn.rotate(p - center));
         }
         self.curves.extend((0..chords).map(|_| circle));
+        Ok(())
     }
 
     /// The chain after a map; circles that do not stay circles become the smooth curve `number` + 1.
@@ -142,20 +144,21 @@ fn turn(degrees: f64) -> f64 {
 
 /// A curve given by an angle, from `from` over `span` degrees.
 fn swept(
-    from: f64,
-    span: f64,
+    entity: &Entity,
+    (from, span): (f64, f64),
     curve: EdgeCurve,
     radius: f64,
     fine: Tolerance,
     at: impl Fn(f64) -> DVec2,
-) -> Chain {
+) -> Result<Chain, ReadError> {
     const WHOLE: f64 = 360.0 - 1e-9;
     let closed = span >= WHOLE;
     let chords =
         flatten::arc_chords(radius, span.to_radians(), fine).max(if closed { 3 } else { 1 });
+    DXF.chords(entity.kind, chords)?;
     let corners = if closed { 0..chords } else { 0..chords + 1 };
     let points = corners.map(|i| at(from + span * f64::from(i) / f64::from(chords))).collect();
-    Chain { points, curves: vec![curve; chords as usize], closed }
+    Ok(Chain { points, curves: vec![curve; chords as usize], closed })
 }
 
 /// The ends of open chains by place, in cells as wide as ends may be apart.

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3, dvec3};
 
-use super::{chain::Chain, entity::Entity};
+use super::{DXF, chain::Chain, entity::Entity};
 use crate::{
     geom::{EdgeCurve, Tolerance},
     input::ReadError,
@@ -29,7 +29,7 @@ pub(super) fn chain(entity: &Entity, fine: Tolerance, number: u32) -> Result<Cha
         entity.points(11)?
     } else {
         let spline = spline(entity, &poles)?;
-        spline.sampled(fine)
+        spline.sampled(fine)?
     };
     let curves = vec![EdgeCurve::Smooth(number); points.len()];
     let mut chain = Chain { points, curves, closed: false };
@@ -79,7 +79,7 @@ impl Spline {
         d[p].truncate() / d[p].z
     }
 
-    fn sampled(&self, fine: Tolerance) -> Vec<DVec2> {
+    fn sampled(&self, fine: Tolerance) -> Result<Vec<DVec2>, ReadError> {
         let mut points: Vec<DVec2> = vec![];
         for span in self.degree..self.poles.len() {
             let (from, to) = (self.knots[span], self.knots[span + 1]);
@@ -90,12 +90,16 @@ impl Spline {
                 points.push(self.at(from, span));
             }
             let ends = ((from, self.at(from, span)), (to, self.at(to, span)));
-            self.halve(span, ends, fine, MOST_HALVINGS, &mut points);
+            if !self.halve(span, ends, fine, MOST_HALVINGS, &mut points) {
+                let limit = format!("{} chords a knot span", 1 << MOST_HALVINGS);
+                return Err(DXF.limit("a SPLINE of more chords at this tolerance", limit));
+            }
         }
-        points
+        Ok(points)
     }
 
-    /// Adds corners behind the first end up to the second, so that quarter points lie near the chords.
+    /// Adds corners behind the first end up to the second, so that quarter points lie near the chords. Whether
+    /// all do.
     fn halve(
         &self,
         span: usize,
@@ -103,7 +107,7 @@ impl Spline {
         fine: Tolerance,
         halvings: u32,
         points: &mut Vec<DVec2>,
-    ) {
+    ) -> bool {
         let middle = from.midpoint(to);
         let m = self.at(middle, span);
         let probes = [self.at(from.midpoint(middle), span), m, self.at(middle.midpoint(to), span)];
@@ -111,10 +115,10 @@ impl Spline {
         // A whole span is halved once at least: an S passes near its chord.
         if halvings == 0 || (flat && halvings < MOST_HALVINGS) {
             points.push(q);
-            return;
+            return flat;
         }
-        self.halve(span, ((from, p), (middle, m)), fine, halvings - 1, points);
-        self.halve(span, ((middle, m), (to, q)), fine, halvings - 1, points);
+        self.halve(span, ((from, p), (middle, m)), fine, halvings - 1, points)
+            && self.halve(span, ((middle, m), (to, q)), fine, halvings - 1, points)
     }
 }
 

@@ -172,6 +172,29 @@ mod tests {
         }
     }
 
+    /// Two blocks that meet in one edge, between two that hold both: the surface touches itself along the
+    /// edge, and is one fan around either end.
+    #[test]
+    fn a_surface_that_touches_itself_along_an_edge_is_taken_apart() {
+        let floors = [[-1., 0.], [0., 1.], [1., 2.]];
+        let mut cubes = vec![];
+        for (level, [z, _]) in floors.into_iter().enumerate() {
+            for (x, y) in [(0., 0.), (0., 1.), (1., 0.), (1., 1.)] {
+                if level != 1 || x == y {
+                    cubes.push(block([x, y, z], 1.));
+                }
+            }
+        }
+        let (points, faces) = soup(&cubes);
+        let across = |f: &[u32; 3], g: &[u32; 3]| f.iter().all(|c| g.contains(c));
+        let inner = |f: &[u32; 3]| faces.iter().filter(|g| across(f, g)).count() > 1;
+        let outer: Vec<[u32; 3]> = faces.iter().filter(|f| !inner(f)).copied().collect();
+        let tower = polyhedron(&points, &outer).expect("closed");
+        assert_eq!((measure::volume(&tower), measure::shells(&tower)), (10.0, 1));
+        assert!(tower.mesh().points.contains(&dvec3(1.0, 1.0, 0.5)));
+        assert!(Polyhedron::new(tower.into_mesh()).is_ok());
+    }
+
     #[test]
     fn faces_with_holes_are_found() {
         let plate = |z: f64| cuboid(dvec3(-9., -9., z), dvec3(9., 9., z + 1.));

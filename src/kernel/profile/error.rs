@@ -99,6 +99,12 @@ pub enum ProfileError {
         /// The number of characters.
         count: usize,
     },
+    /// A curve that the tolerance asks for more chords of than are drawn.
+    #[error("a curve needs {needed} chords at this tolerance; the limit is {most}", most = crate::geom::flatten::MOST_CHORDS)]
+    FineCurve {
+        /// The number of chords.
+        needed: u32,
+    },
 }
 
 /// A segment of a polygon: the one from corner `index` to the next.

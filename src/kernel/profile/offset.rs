@@ -144,7 +144,8 @@ fn subdivide(way: &mut Contour, strip: &Strip, d: f64, tolerance: Tolerance) {
     let from = strip.start + strip.start_normal * d - center;
     let to = strip.end + strip.end_normal * d - center;
     let angle = libm::atan2(from.perp_dot(to), from.dot(to));
-    let chords = flatten::arc_chords(radius, angle, tolerance);
+    // An edge is a chord already: a cap that no edge within any tolerance reaches.
+    let chords = flatten::arc_chords(radius, angle, tolerance).min(flatten::MOST_CHORDS);
     let inner = (1..chords).map(|i| {
         let t = f64::from(i) / f64::from(chords);
         let degrees = angle.to_degrees() * t;

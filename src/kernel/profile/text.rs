@@ -14,6 +14,7 @@ use skrifa::font::{
 use super::ProfileError;
 use crate::geom::{
     Contour, Region, Tolerance,
+    flatten::MOST_CHORDS,
     outline::Outline,
     overlay::{Fill, Rule, overlay},
 };
@@ -95,7 +96,8 @@ pub struct Text {
 /// [`LIBERATION_SANS`]. Kerning and ligatures are those of the font.
 ///
 /// # Errors
-/// A font that cannot be read, a character it has no glyph for, a size that is not positive.
+/// A font that cannot be read, a character it has no glyph for, a size that is not positive, a curve of more
+/// than [`MOST_CHORDS`].
 ///
 /// ```
 /// use katachi::kernel::profile::{TextOptions, text};
@@ -128,6 +130,10 @@ pub fn text(text: &str, options: &TextOptions, font: Option<&[u8]>) -> Result<Te
         outline
             .draw(&DrawOptions::default(), DrawMemory::Scratch, &mut pen)
             .map_err(|error| ProfileError::Font { reason: error.to_string() })?;
+    }
+    let needed = pen.outline.most_chords();
+    if needed > MOST_CHORDS {
+        return Err(ProfileError::FineCurve { needed });
     }
     let mut contours: Vec<Contour> = pen.outline.take();
     let rise = shift_y(options.valign, &contours);

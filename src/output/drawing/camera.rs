@@ -176,6 +176,17 @@ impl Camera {
         self.toward
     }
 
+    /// The camera turned level, so that z is upright in its picture; `None` when it looks along z.
+    pub(super) fn level(&self) -> Option<Camera> {
+        let Some(distance) = self.distance else {
+            return (self.toward.with_z(0.0).length() > UPRIGHT).then_some(*self);
+        };
+        let eye = self.target + self.toward * distance;
+        let flat = self.toward.with_z(0.0) * distance;
+        let camera = Camera::perspective(eye, eye - flat).ok()?;
+        (flat.length() > UPRIGHT * distance).then_some(camera)
+    }
+
     /// The point whose image is the picture's origin.
     pub fn target(&self) -> DVec3 {
         self.target

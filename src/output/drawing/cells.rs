@@ -4,6 +4,8 @@ use glam::{DVec2, dvec2};
 
 /// Most cells each way: beyond that, walking them costs more than what they keep apart.
 const MOST: f64 = 512.0;
+/// Cells an item stands in on average, at most.
+const FILLING: f64 = 32.0;
 /// Ranges of cells are wider than computed by this part of a cell, far more than their rounding.
 const SLACK: f64 = 1e-6;
 
@@ -41,20 +43,26 @@ impl Cells {
     /// A grid with about one cell an item.
     pub fn new(count: usize, extent: impl Fn(usize) -> Extent) -> Cells {
         let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        let mut covered = 0.0;
         for i in 0..count {
             let (low, high) = extent(i).corners();
             (min, max) = (min.min(low), max.max(high));
+            covered += (high.x - low.x) * (high.y - low.y);
         }
-        let mut cells = Cells::sized(min, max, count);
+        // Items that cover the picture many times over get few cells, or each would stand in all of them.
+        let layers = covered / ((max - min).max(DVec2::ONE).element_product());
+        let wanted = (count as f64).min(FILLING * count as f64 / layers.max(1.0));
+        let mut cells = Cells::sized(min, max, wanted as usize);
         cells.fill(count, extent);
         cells
     }
 
     fn sized(min: DVec2, max: DVec2, count: usize) -> Cells {
-        let extent = if count == 0 { DVec2::ONE } else { (max - min).max(DVec2::ONE) };
+        let some = min.x <= max.x;
+        let extent = if some { (max - min).max(DVec2::ONE) } else { DVec2::ONE };
         let each = (extent.x * extent.y / (count.max(1) as f64)).sqrt();
         let size = (extent / each).ceil().clamp(DVec2::ONE, DVec2::splat(MOST));
-        let min = if count == 0 { DVec2::ZERO } else { min };
+        let min = if some { min } else { DVec2::ZERO };
         Cells {
             min,
             scale: size / extent,

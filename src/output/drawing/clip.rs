@@ -137,10 +137,11 @@ impl<'a> Clipper<'a> {
         };
         let sight = self.model.camera.sight(p).normalize_or_zero();
         let curve = self.model.curves.get(edge.curve as usize);
-        let radius = field.local(p).radius();
         let own = curve.is_some_and(|c| c.is_contour_of(field));
-        let contact = if own { radius * OWN } else { self.model.bound };
-        ahead(field, &facet.plane, p, sight, radius / 2.0) > contact
+        let contact = if own { field.local(p).radius() * OWN } else { self.model.bound };
+        let corner = self.model.sides[facet.sides[0] as usize][0];
+        let corner = self.model.space[corner as usize];
+        ahead(field, &facet.plane, corner, p, sight) > contact
     }
 }
 
@@ -151,12 +152,34 @@ const OWN: f64 = 1.0 / 256.0;
 /// Newton's steps along a sight line, at most.
 const STEPS: usize = 64;
 
-/// How far along a sight line from `p` it meets the part of a surface that a plane stands for, mm;
-/// steps are `reach` mm at most.
-fn ahead(field: &Field, plane: &Plane, p: DVec3, sight: DVec3, reach: f64) -> f64 {
+/// Facets seen at a smaller angle than this (its sine) do not tell where their plane is met.
+const STEEP: f64 = 0.05;
+
+/// How far along a sight line from `p` it meets the front of a surface near a facet, given by its plane and a
+/// corner, mm.
+fn ahead(field: &Field, plane: &Plane, corner: DVec3, p: DVec3, sight: DVec3) -> f64 {
     let slope = plane.normal.dot(sight);
-    let guess = -plane.distance(p) / slope;
-    let mut s = if slope.abs() > 0.01 && guess.is_finite() { guess } else { 0.0 };
+    let steep = slope.abs() < STEEP;
+    let guess = if steep { (corner - p).dot(sight) } else { -plane.distance(p) / slope };
+    let there = field.local(corner);
+    let reach = there.radius() / 2.0;
+    let outward = there.normal.dot(plane.normal).signum();
+    // Newton's method may find where the sight line leaves the surface again; the front is nearer to the eye.
+    let starts = [0.0, 1.0, 2.0, 4.0].map(|k| guess + k * reach);
+    let front = starts.into_iter().map(|start| met(field, p, sight, start, reach)).find(|s| {
+        let (_, normal) = field.slope(p + sight * s);
+        outward * normal.dot(sight) > -TOUCHING
+    });
+    front.unwrap_or(guess)
+}
+
+/// Where a sight line touches a surface the sine of the angle between them is below this, after Newton's method has
+/// found half the digits of the place.
+const TOUCHING: f64 = 1e-4;
+
+/// The place along a sight line where it meets a surface near a place, in steps of `reach` mm at most.
+fn met(field: &Field, p: DVec3, sight: DVec3, start: f64, reach: f64) -> f64 {
+    let mut s = start;
     for _ in 0..STEPS {
         let (value, normal) = field.slope(p + sight * s);
         let step = (value / normal.dot(sight)).clamp(-reach, reach);

@@ -1,5 +1,7 @@
 //! Chains of chords as they are drawn: straight lines, arcs of ellipses, or a few cubic curves.
 
+use std::f64::consts::TAU;
+
 use glam::DVec2;
 
 use super::{
@@ -144,6 +146,7 @@ impl<'a> Fitted<'a> {
         nodes
     }
 
+    /// The arc through points of an ellipse.
     fn arc(&self, ellipse: &Ellipse, stretch: &Stretch, points: &[DVec2]) -> Shape {
         let (start, end) = (points[0], points[points.len() - 1]);
         let middle = if points.len() > 2 {
@@ -151,14 +154,16 @@ impl<'a> Fitted<'a> {
         } else {
             self.point((stretch.from.0 + stretch.to.0) / 2.0)
         };
+        let long = start.distance(middle) + middle.distance(end);
         let [s, m, e] = [start, middle, end].map(|p| ellipse.parameter(p));
-        let tau = std::f64::consts::TAU;
-        let after = |from: f64, t: f64| (t - from).rem_euclid(tau);
-        let whole = start.distance(end) <= self.tolerance;
-        if whole {
-            return Shape::Arc(*ellipse, s, s + tau);
+        let after = |from: f64, t: f64| (t - from).rem_euclid(TAU);
+        let short = long < ellipse.minor.length() / 4.0;
+        if start.distance(end) <= self.tolerance && !short {
+            return Shape::Arc(*ellipse, s, s + TAU);
         }
-        if after(s, m) <= after(s, e) {
+        // Of a short arc the middle is too near to the ends to tell the way.
+        let forwards = if short { after(s, e) <= after(e, s) } else { after(s, m) <= after(s, e) };
+        if forwards {
             Shape::Arc(*ellipse, s, s + after(s, e))
         } else {
             Shape::Arc(*ellipse, e, e + after(e, s))

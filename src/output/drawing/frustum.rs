@@ -11,6 +11,7 @@ use rustc_hash::FxHashMap;
 
 use super::{
     Camera, Window,
+    merge::Piece,
     scene::{Scene, Stroke},
 };
 use crate::geom::PolyMesh;
@@ -33,11 +34,21 @@ impl Visible<'_> {
     }
 }
 
+/// Coordinates up to this, mm, can be squared and multiplied on; what reaches farther is left out.
+const FARTHEST: f64 = 1e60;
+
+fn is_near(p: &DVec3) -> bool {
+    p.is_finite() && p.abs().max_element() <= FARTHEST
+}
+
 /// The bodies and strokes of a scene as far as they are before the eye.
 pub fn before_eye<'a>(scene: &Scene<'a>, camera: &Camera) -> (Vec<Visible<'a>>, Vec<Stroke>) {
     let mut bodies = vec![];
     for body in &scene.bodies {
         let (mesh, id, cut) = (body.mesh, body.id, body.mesh.points.len() as u32);
+        if !mesh.points.iter().all(is_near) {
+            continue;
+        }
         let behind = mesh.points.iter().filter(|p| camera.ahead(**p) < 0.0).count();
         if behind == 0 {
             bodies.push(Visible { mesh: Cow::Borrowed(mesh), id, cut });
@@ -46,7 +57,8 @@ pub fn before_eye<'a>(scene: &Scene<'a>, camera: &Camera) -> (Vec<Visible<'a>>, 
             bodies.push(Visible { mesh, id, cut });
         }
     }
-    let strokes = scene.strokes.iter().flat_map(|s| cut_stroke(s, camera)).collect();
+    let near = scene.strokes.iter().filter(|s| s.points.iter().all(is_near));
+    let strokes = near.flat_map(|s| cut_stroke(s, camera)).collect();
     (bodies, strokes)
 }
 
@@ -152,6 +164,16 @@ impl Window {
             }
         }
         (from < to).then_some((from, to))
+    }
+
+    /// Cuts a piece off at the border; false if nothing is left of it.
+    pub(super) fn cut(&self, piece: &mut Piece) -> bool {
+        let Some((from, to)) = self.of_segment(piece.from, piece.to) else { return false };
+        let [p, q] = [piece.from, piece.to];
+        // An end within stays as it is, to the bit, so that lines go on into each other.
+        piece.from = if from > 0.0 { p.lerp(q, from) } else { p };
+        piece.to = if to < 1.0 { p.lerp(q, to) } else { q };
+        true
     }
 
     /// The parts of a curve within the window, as parameters in 0..1.

@@ -66,7 +66,8 @@ pub fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
 #[cold]
 fn exact(p: DVec2, q: DVec2) -> f64 {
     let [a, b, c, d] = [p.x, p.y, q.x, q.y].map(|v| v as i128);
-    (a * d - b * c) as f64
+    // Saturating, since what is not finite comes here too.
+    a.saturating_mul(d).saturating_sub(b.saturating_mul(c)) as f64
 }
 
 /// The line through two lattice points, with parameter 0 at the first and 1 at the second.

@@ -49,10 +49,26 @@ pub fn merged(pieces: &[Piece], tolerance: f64) -> Vec<Piece> {
         pieces.iter().zip(0..).map(|(p, i)| (slope(p.to - p.from), i)).collect();
     order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let mut out = Vec::with_capacity(pieces.len());
-    for parallel in order.chunk_by(|a, b| b.0 - a.0 <= TURN) {
+    each_direction(&order, TURN, &mut |parallel| {
         merge_parallel(pieces, parallel, tolerance, &mut out);
-    }
+    });
     out
+}
+
+/// Pieces of so many directions in a row are many lines with little between them, not one line.
+const CROWD: usize = 512;
+
+/// Calls with runs of nearly one direction: where the next is farther than `turn`, a run ends; crowds are parted at
+/// smaller gaps.
+fn each_direction(order: &[(f64, u32)], turn: f64, found: &mut impl FnMut(&[(f64, u32)])) {
+    for run in order.chunk_by(|a, b| b.0 - a.0 <= turn) {
+        let spread = run[run.len() - 1].0 - run[0].0;
+        if run.len() > CROWD && spread > 4.0 * turn {
+            each_direction(run, turn / 8.0, found);
+        } else {
+            found(run);
+        }
+    }
 }
 
 /// Merges pieces of nearly one direction.

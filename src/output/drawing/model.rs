@@ -11,10 +11,11 @@ use super::{
     frustum::{Visible, before_eye},
     lattice::{Lattice, Plane},
     links::{self, Link, NONE, links},
+    patches::faithful_origins,
     scene::{Kind, Options, Scene, Stroke},
     smooth,
 };
-use crate::geom::{Bounds, PolyMesh, Surface, bvh::Bvh};
+use crate::geom::{Bounds, PolyMesh, Surface, bvh::Bvh, trig::cos_deg};
 
 /// A point nearer than this part of the scene's size to a face's plane lies in it: set operations round
 /// points to 2^-29 of the size, and a plane through rounded points misses others by a few times that.
@@ -245,9 +246,10 @@ impl Model {
         let links = links(mesh);
         let open = links.iter().any(|l| l.right == NONE && !body.is_cut(l.a, l.b));
         let faces = self.add_facets(mesh, base, open);
-        let crease = crate::geom::trig::cos_deg(options.crease);
+        let crease = cos_deg(options.crease);
+        let round = faithful_origins(mesh, options.tolerance);
         for link in &links {
-            let kind = kind(mesh, link, &faces, crease);
+            let kind = kind(mesh, link, &faces, &round, crease);
             if let Some(kind) = kind.filter(|_| !body.is_cut(link.a, link.b)) {
                 let (a, b) = (base + link.a, base + link.b);
                 let hides = |f: u32| f != NONE && faces.facet[f as usize] != NONE;
@@ -375,7 +377,7 @@ impl Model {
 }
 
 /// What an edge is drawn as; `None` when it only parts facets of one surface.
-fn kind(mesh: &PolyMesh, link: &Link, faces: &Faces, crease: f64) -> Option<Kind> {
+fn kind(mesh: &PolyMesh, link: &Link, faces: &Faces, round: &[bool], crease: f64) -> Option<Kind> {
     if link.right == NONE {
         return Some(Kind::Border);
     }
@@ -389,12 +391,12 @@ fn kind(mesh: &PolyMesh, link: &Link, faces: &Faces, crease: f64) -> Option<Kind
     }
     let cosine = faces.normals[left].dot(faces.normals[right]);
     let [s, t] = [one, other].map(|f| f.origin().surface);
+    let [curved, bent] = [one, other].map(|f| round[f.origin_index() as usize]);
     let sharp = match (s, t) {
         (Surface::Facets, _) | (_, Surface::Facets) => cosine < crease,
-        (Surface::Plane, Surface::Plane) => {
-            cosine <= 0.0 || faces.normals[left].cross(faces.normals[right]).length() > FLAT
-        }
-        _ => s != t,
+        _ if curved && bent => s != t,
+        _ if curved || bent => true,
+        _ => cosine <= 0.0 || faces.normals[left].cross(faces.normals[right]).length() > FLAT,
     };
     sharp.then_some(Kind::Sharp)
 }

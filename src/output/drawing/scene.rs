@@ -36,6 +36,10 @@ pub enum Kind {
     Contour,
     /// A figure on a face.
     Pattern,
+    /// A grid line of a surface, where its upper side is seen.
+    Upper,
+    /// A grid line of a surface, where its lower side is seen.
+    Lower,
     /// A line in space.
     Free,
     /// Where a cutting plane runs.

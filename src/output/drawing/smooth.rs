@@ -17,13 +17,10 @@ use super::{
     lattice::Plane,
     links::{Link, NONE, each_side, links},
     model::{Edge, Facet, Model, Outline},
+    patches::{Patch, Patches, faithful_origins},
     scene::{Kind, Options},
 };
-use crate::geom::{PolyMesh, Surface};
-
-/// Facets stand for their surface when they are within the tolerance, and this factor of it where set operations
-/// cut them across.
-const FAITHFUL: f64 = 1.5;
+use crate::geom::{PolyMesh, Surface, trig::cos_deg};
 
 /// A surface is seen edge-on where the sine of the angle to the sight line is below this: rounding leaves
 /// contours that run along rows of corners that far off.
@@ -34,14 +31,6 @@ const TANGENT: f64 = 1e-4;
 
 /// A chord is halved at most so often.
 const HALVINGS: u32 = 12;
-
-/// A surface and which side of it is outside.
-#[derive(Clone, Copy, PartialEq, Debug)]
-struct Patch {
-    field: Field,
-    /// 1 where the gradient points outwards, else -1.
-    outward: f64,
-}
 
 /// Where a contour passes the side of a face.
 #[derive(Clone, Copy, Debug)]
@@ -58,9 +47,9 @@ struct Smooth<'a> {
     mesh: &'a PolyMesh,
     base: u32,
     id: u32,
-    patches: Vec<Patch>,
-    /// The patch of each face.
-    patch: Vec<u32>,
+    /// Cosine of the angle from which on facets without a closed form meet in an edge.
+    crease: f64,
+    patches: Patches,
     /// Whether each flat face is in front.
     front: Vec<bool>,
     /// How far the last patch asked for is turned to the eye at each point of the mesh.
@@ -76,22 +65,25 @@ struct Smooth<'a> {
     outline_faces: Vec<u32>,
 }
 
-/// Adds a body if it has round faces; false if all its facets stand for themselves.
+/// Adds a body if it has round faces; false if all its facets stand for themselves, as those of an open surface do.
 pub fn add_body(model: &mut Model, body: &Visible, base: u32, options: &Options) -> bool {
     let mesh = &*body.mesh;
-    let round = faithful_origins(mesh, options.tolerance.mm() * FAITHFUL);
+    let round = faithful_origins(mesh, options.tolerance);
     if !round.contains(&true) {
         return false;
     }
     let links = links(mesh);
+    if links.iter().any(|l| l.right == NONE && !body.is_cut(l.a, l.b)) {
+        return false;
+    }
     let mut smooth = Smooth {
         model,
         body,
         mesh,
         base,
         id: body.id,
-        patches: vec![],
-        patch: vec![],
+        crease: cos_deg(options.crease),
+        patches: Patches::new(mesh, &round),
         front: vec![],
         turns: vec![(NONE, 0.0); mesh.points.len()],
         fields: vec![],
@@ -100,7 +92,6 @@ pub fn add_body(model: &mut Model, body: &Visible, base: u32, options: &Options)
         curves: BTreeMap::new(),
         outline_faces: vec![],
     };
-    smooth.find_patches(&round);
     smooth.settle_points();
     smooth.find_front();
     let first = smooth.model.outlines.len();
@@ -110,64 +101,12 @@ pub fn add_body(model: &mut Model, body: &Visible, base: u32, options: &Options)
     true
 }
 
-/// Which origins are round surfaces that their facets keep to.
-fn faithful_origins(mesh: &PolyMesh, tolerance: f64) -> Vec<bool> {
-    let flat = |s: &Surface| matches!(s, Surface::Plane | Surface::Facets);
-    let mut round: Vec<bool> = mesh.origins().iter().map(|o| !flat(&o.surface)).collect();
-    if !round.contains(&true) {
-        return round;
-    }
-    each_side(mesh, |face, a, b| {
-        let origin = mesh.face(face as usize).origin_index() as usize;
-        if round[origin] {
-            let field = Field::Round(mesh.origins()[origin].surface);
-            let [p, q] = [a, b].map(|i| mesh.points[i as usize]);
-            round[origin] = field.slope((p + q) / 2.0).0.abs() <= tolerance;
-        }
-    });
-    round
-}
-
 impl Smooth<'_> {
-    /// Numbers the surfaces: flat faces by their plane, round ones by surface and outside.
-    fn find_patches(&mut self, round: &[bool]) {
-        let mut of_plane = vec![NONE; self.mesh.plane_count() as usize];
-        let mut of_origin = vec![[NONE; 2]; round.len()];
-        for face in self.mesh.faces() {
-            let normal = face.area_vector().normalize_or_zero();
-            let on = self.mesh.points[face.outer()[0] as usize];
-            let origin = face.origin_index() as usize;
-            let patch = if round[origin] {
-                let field = Field::Round(face.origin().surface);
-                let inside = field.slope(on).1.dot(normal) < 0.0;
-                let outward = if inside { -1.0 } else { 1.0 };
-                let known = &mut of_origin[origin][usize::from(inside)];
-                if *known == NONE {
-                    *known = numbered(&mut self.patches, Patch { field, outward });
-                }
-                *known
-            } else {
-                let known = &mut of_plane[face.plane() as usize];
-                if *known == NONE {
-                    let field = Field::Flat(Plane { normal, offset: normal.dot(on) });
-                    *known = self.patches.len() as u32;
-                    self.patches.push(Patch { field, outward: 1.0 });
-                }
-                *known
-            };
-            self.patch.push(patch);
-        }
-    }
-
-    fn is_round(&self, patch: u32) -> bool {
-        matches!(self.patches[patch as usize].field, Field::Round(_))
-    }
-
     /// Moves every point onto the surfaces that meet there.
     fn settle_points(&mut self) {
         let mut met = vec![[NONE; 3]; self.mesh.points.len()];
         each_side(self.mesh, |face, a, _| {
-            let patch = self.patch[face as usize];
+            let patch = self.patches.of_face[face as usize];
             let known = &mut met[a as usize];
             if let Some(place) = known.iter().position(|&k| k == patch || k == NONE) {
                 known[place] = patch;
@@ -179,7 +118,7 @@ impl Smooth<'_> {
             let rounding = f64::EPSILON * start.abs().max_element();
             let mut fields = [Field::Flat(Plane { normal: DVec3::ZERO, offset: 0.0 }); 3];
             let known = fields.iter_mut().zip(met);
-            known.for_each(|(field, &p)| *field = self.patches[p as usize].field);
+            known.for_each(|(field, &p)| *field = self.patches.list[p as usize].field);
             let fields = &fields[..met.len()];
             let round = fields.iter().any(|f| matches!(f, Field::Round(_)));
             if round && fields.iter().any(|f| f.slope(start).0.abs() > rounding) {
@@ -216,7 +155,7 @@ impl Smooth<'_> {
     }
 
     fn turn(&self, patch: u32, point: u32) -> f64 {
-        let Patch { field, outward } = self.patches[patch as usize];
+        let Patch { field, outward } = self.patches.list[patch as usize];
         let p = self.model.space[point as usize];
         let sine = field.slope(p).1.dot(self.model.camera.sight(p).normalize()) * outward;
         if sine.abs() < EDGE_ON { 0.0 } else { sine }
@@ -227,8 +166,8 @@ impl Smooth<'_> {
         if face == NONE {
             return [false; 2];
         }
-        let patch = self.patch[face as usize];
-        if self.is_round(patch) {
+        let patch = self.patches.of_face[face as usize];
+        if self.patches.is_round(patch) {
             ends.map(|p| self.turned(patch, p) > 0.0)
         } else {
             [self.front[face as usize]; 2]
@@ -238,8 +177,8 @@ impl Smooth<'_> {
     fn add_link(&mut self, link: &Link) {
         let ends = [self.base + link.a, self.base + link.b];
         let same = link.right != NONE && {
-            let [l, r] = [link.left, link.right].map(|f| self.patch[f as usize]);
-            l == r && self.is_round(l)
+            let [l, r] = [link.left, link.right].map(|f| self.patches.of_face[f as usize]);
+            l == r && self.patches.is_round(l)
         };
         let left = self.ends_front(link.left, ends);
         if same {
@@ -262,7 +201,7 @@ impl Smooth<'_> {
             [false, false] => {}
             [true, true] => part([a, b]),
             [leaves, _] => {
-                let patch = self.patch[link.left as usize];
+                let patch = self.patches.of_face[link.left as usize];
                 let at = self.contour_point(patch, None, [a, b]);
                 self.parts_at_pass(link, [a, b], at, leaves);
             }
@@ -286,14 +225,14 @@ impl Smooth<'_> {
         if s == 0.0 || t == 0.0 {
             return if s == 0.0 { a } else { b };
         }
-        let field = self.patches[patch as usize].field;
+        let field = self.patches.list[patch as usize].field;
         let [p, q] = [a, b].map(|i| self.model.space[i as usize]);
         let start = p.lerp(q, s / (s - t));
         let contour = Curve([Constraint::On(field), Constraint::Contour(field)]);
         let (camera, reach) = (&self.model.camera, p.distance(q));
         let found = match other {
             Some(other) => {
-                let other = Constraint::On(self.patches[other as usize].field);
+                let other = Constraint::On(self.patches.list[other as usize].field);
                 contour.meeting(other, camera, start, reach)
             }
             None => {
@@ -306,8 +245,8 @@ impl Smooth<'_> {
 
     /// An edge between two surfaces, or a border.
     fn add_sharp(&mut self, link: &Link, ends: [u32; 2], left: [bool; 2], right: [bool; 2]) {
-        let patches =
-            [link.left, link.right].map(|f| if f == NONE { NONE } else { self.patch[f as usize] });
+        let patches = [link.left, link.right]
+            .map(|f| if f == NONE { NONE } else { self.patches.of_face[f as usize] });
         let mut nodes = vec![(ends[0], left[0], right[0])];
         let passes = [(0, left), (1, right)].map(|(side, front)| {
             (front[0] != front[1]).then(|| {
@@ -332,7 +271,7 @@ impl Smooth<'_> {
         let drawn = if link.right == NONE {
             !self.body.is_cut(link.a, link.b)
         } else {
-            !self.is_tangent(patches, ends)
+            self.is_sharp(link, patches, ends)
         };
         for i in 0..nodes.len() {
             let (from, l, r) = nodes[i];
@@ -343,15 +282,21 @@ impl Smooth<'_> {
         }
     }
 
-    /// Whether two patches meet without an angle.
-    fn is_tangent(&self, patches: [u32; 2], ends: [u32; 2]) -> bool {
-        ends.iter().all(|&p| {
+    /// Whether two patches meet at an angle that is drawn.
+    fn is_sharp(&self, link: &Link, patches: [u32; 2], ends: [u32; 2]) -> bool {
+        let faces = [link.left, link.right].map(|f| self.mesh.face(f as usize));
+        let facets = faces.iter().any(|f| f.origin().surface == Surface::Facets);
+        ends.iter().any(|&p| {
             let p = self.model.space[p as usize];
             let [m, n] = patches.map(|patch| {
-                let Patch { field, outward } = self.patches[patch as usize];
+                let Patch { field, outward } = self.patches.list[patch as usize];
                 field.slope(p).1 * outward
             });
-            m.dot(n) > 0.0 && m.cross(n).length() < TANGENT
+            if facets {
+                m.dot(n) < self.crease
+            } else {
+                m.dot(n) <= 0.0 || m.cross(n).length() > TANGENT
+            }
         })
     }
 
@@ -364,7 +309,7 @@ impl Smooth<'_> {
         [left, right]: [bool; 2],
         drawn: bool,
     ) {
-        let round = patches.iter().any(|&p| p != NONE && self.is_round(p));
+        let round = patches.iter().any(|&p| p != NONE && self.patches.is_round(p));
         let curve = if round && drawn && !patches.contains(&NONE) {
             self.curve(patches[0], patches[1])
         } else {
@@ -407,7 +352,7 @@ impl Smooth<'_> {
     /// The number of the curve where two patches meet, or of the contour of one.
     fn curve(&mut self, one: u32, other: u32) -> u32 {
         let key = (one.min(other), one.max(other));
-        let [p, q] = [key.0, key.1].map(|i| self.patches[i as usize].field);
+        let [p, q] = [key.0, key.1].map(|i| self.patches.list[i as usize].field);
         *self.curves.entry(key).or_insert_with(|| {
             let second = if key.0 == key.1 { Constraint::Contour(q) } else { Constraint::On(q) };
             self.model.curves.push(Curve([Constraint::On(p), second]));
@@ -467,7 +412,7 @@ impl Smooth<'_> {
 
     /// The contour through a face from where it leaves the front to where it comes back.
     fn add_contour(&mut self, face: u32, ends: [u32; 2]) {
-        let patch = self.patch[face as usize];
+        let patch = self.patches.of_face[face as usize];
         let curve = self.curve(patch, patch);
         let nodes = self.refined(curve, ends);
         let nodes = self.with_cusps(patch, curve, nodes);
@@ -487,7 +432,7 @@ impl Smooth<'_> {
 
     /// Points of a contour with its cusps between them.
     fn with_cusps(&mut self, patch: u32, curve: u32, nodes: Vec<u32>) -> Vec<u32> {
-        let field = self.patches[patch as usize].field;
+        let field = self.patches.list[patch as usize].field;
         let curve = self.model.curves[curve as usize];
         let mut out = vec![nodes[0]];
         for pair in nodes.windows(2) {
@@ -519,7 +464,7 @@ impl Smooth<'_> {
     /// Makes a facet of the front part of every face, and tells outlines their facet.
     fn add_facets(&mut self, first_outline: usize) {
         let parts = by_face(std::mem::take(&mut self.parts), self.mesh.face_count());
-        self.fields = vec![NONE; self.patches.len()];
+        self.fields = vec![NONE; self.patches.list.len()];
         let mut facet_of = vec![NONE; self.mesh.face_count()];
         for group in parts.chunk_by(|a, b| a.0 == b.0) {
             let face = group[0].0;
@@ -543,9 +488,9 @@ impl Smooth<'_> {
         let normal = face_ref.area_vector().normalize_or_zero();
         let on = self.model.space[(self.base + face_ref.outer()[0]) as usize];
         let plane = Plane { normal, offset: normal.dot(on) };
-        let patch = self.patches[self.patch[face as usize] as usize];
+        let patch = self.patches.list[self.patches.of_face[face as usize] as usize];
         let field = if matches!(patch.field, Field::Round(_)) {
-            let slot = &mut self.fields[self.patch[face as usize] as usize];
+            let slot = &mut self.fields[self.patches.of_face[face as usize] as usize];
             if *slot == NONE {
                 self.model.fields.push(patch.field);
                 *slot = self.model.fields.len() as u32 - 1;
@@ -570,13 +515,4 @@ fn by_face(parts: Vec<(u32, [u32; 2])>, faces: usize) -> Vec<(u32, [u32; 2])> {
         *place += 1;
     }
     sorted
-}
-
-/// The number of a patch, the same for the same surface.
-fn numbered(patches: &mut Vec<Patch>, patch: Patch) -> u32 {
-    let known = patches.iter().position(|p| *p == patch);
-    known.unwrap_or_else(|| {
-        patches.push(patch);
-        patches.len() - 1
-    }) as u32
 }

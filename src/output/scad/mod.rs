@@ -9,20 +9,24 @@
 //! files it may not have) is asked of [`Realized`] and written as points.
 //!
 //! # Departures
-//! True curves get the facet count that the tolerance asks for. Where both languages approximate
+//! True curves get the facet count that the tolerance asks for, divided by what the placements around them
+//! stretch. Where both languages approximate
 //! (offsets with round corners, twists) facets need not correspond, both are within the tolerance.
 //! OpenSCAD takes every number for exact: faces that only rounding keeps apart (0.1 + 0.2 and 0.3) are one
 //! on our lattice and two there, with a skin of no thickness between them.
 //! Of nested colours the outermost shows in OpenSCAD, the innermost here; shapes do not differ.
 
-use std::{collections::BTreeSet, fmt::Write};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fmt::Write,
+};
 
 use rustc_hash::FxHashMap;
 use thiserror::Error;
 
 use crate::{
-    geom::{PolyMesh, Region, Tolerance},
-    shape::{Node, ShapeGraph, ShapeId},
+    geom::{PolyMesh, Region, Stretch, Tolerance},
+    shape::{Node, ShapeGraph, ShapeId, Stretched},
 };
 
 mod plane;
@@ -35,10 +39,10 @@ const DEEPEST: u32 = 24;
 /// Shapes made real: what the writer asks for where a construction has no word in OpenSCAD.
 pub trait Realized {
     /// The boundary of a solid in mm; `None` if it cannot be made.
-    fn mesh(&self, shape: ShapeId) -> Option<PolyMesh>;
+    fn mesh(&self, shape: Stretched) -> Option<PolyMesh>;
 
     /// A profile as polygons of its plane in mm; `None` if it cannot be made.
-    fn region(&self, shape: ShapeId) -> Option<Region>;
+    fn region(&self, shape: Stretched) -> Option<Region>;
 }
 
 /// Why there is no OpenSCAD source.
@@ -69,11 +73,11 @@ pub enum ScadError {
 /// use katachi::base::Span;
 /// use katachi::geom::{PolyMesh, Region, Tolerance};
 /// use katachi::output::scad;
-/// use katachi::shape::{Node, ShapeGraph, ShapeId};
+/// use katachi::shape::{Node, ShapeGraph, Stretched};
 /// struct Nothing;
 /// impl scad::Realized for Nothing {
-///     fn mesh(&self, _: ShapeId) -> Option<PolyMesh> { None }
-///     fn region(&self, _: ShapeId) -> Option<Region> { None }
+///     fn mesh(&self, _: Stretched) -> Option<PolyMesh> { None }
+///     fn region(&self, _: Stretched) -> Option<Region> { None }
 /// }
 /// let mut graph = ShapeGraph::default();
 /// let pin = graph.add(Node::Cone { r1: 2., r2: 2., h: 9., sides: Some(6) }, Span::default());
@@ -95,15 +99,15 @@ pub fn write(
         text: String::from("// Made by Katachi. Unit: millimetre.\n\n"),
     };
     let mut names = Names::default();
-    for (id, name) in plan.modules {
+    for (shape, name) in plan.modules {
         let name = names.claim(&name);
-        writer.module(&name, id)?;
-        writer.modules.insert(id, name);
+        writer.module(&name, shape)?;
+        writer.modules.insert(shape, name);
     }
     let mut calls = String::new();
     for &(name, id) in parts {
         let name = names.claim(&format!("part_{name}"));
-        writer.module(&name, id)?;
+        writer.module(&name, graph.stretched(id, Stretch::ONE))?;
         let _ = writeln!(calls, "{name}();");
     }
     writer.text.push_str(&calls);
@@ -112,59 +116,41 @@ pub fn write(
 
 /// What is written as a module of its own, children first.
 struct Plan {
-    modules: Vec<(ShapeId, String)>,
+    modules: Vec<(Stretched, String)>,
 }
 
 impl Plan {
     /// A child's number is always below its parent's, so one walk down the numbers counts the uses of
     /// all shapes and one walk up finds their heights.
     fn new(graph: &ShapeGraph, parts: &[(&str, ShapeId)]) -> Plan {
-        let mut uses = vec![0u32; graph.len()];
-        parts.iter().for_each(|(_, id)| uses[id.0 as usize] += 1);
-        for i in (0..graph.len()).rev() {
-            if uses[i] > 0 {
-                let node = graph.node(ShapeId(i as u32));
-                children(node).iter().for_each(|child| uses[child.0 as usize] += 1);
+        let mut rest: BTreeMap<Stretched, u32> = BTreeMap::new();
+        for &(_, id) in parts {
+            *rest.entry(graph.stretched(id, Stretch::ONE)).or_default() += 1;
+        }
+        let mut uses = vec![];
+        while let Some((shape, count)) = rest.pop_last() {
+            uses.push((shape, count));
+            for &child in graph.node(shape.id).children() {
+                *rest.entry(graph.part(shape, child)).or_default() += 1;
             }
         }
-        let mut heights = vec![0u32; graph.len()];
+        let mut heights: FxHashMap<Stretched, u32> = FxHashMap::default();
         let mut modules = vec![];
-        for i in (0..graph.len()).filter(|&i| uses[i] > 0) {
-            let id = ShapeId(i as u32);
-            let node = graph.node(id);
-            let highest = children(node).iter().map(|child| heights[child.0 as usize] + 1).max();
-            heights[i] = highest.unwrap_or(0);
+        for (shape, count) in uses.into_iter().rev() {
+            let node = graph.node(shape.id);
+            let under = node.children().iter().map(|&child| heights[&graph.part(shape, child)] + 1);
+            let height = under.max().unwrap_or(0);
             let name = match node {
                 Node::Tag { name, .. } => Some(format!("tag_{name}")),
-                _ if heights[i] >= DEEPEST || (uses[i] > 1 && is_long(node)) => {
+                _ if height >= DEEPEST || (count > 1 && is_long(node)) => {
                     Some(format!("shape_{}", modules.len() + 1))
                 }
                 _ => None,
             };
-            if let Some(name) = name {
-                heights[i] = 0;
-                modules.push((id, name));
-            }
+            heights.insert(shape, if name.is_some() { 0 } else { height });
+            modules.extend(name.map(|name| (shape, name)));
         }
         Plan { modules }
-    }
-}
-
-/// The shapes a node is made of.
-fn children(node: &Node) -> &[ShapeId] {
-    match node {
-        Node::Union(list)
-        | Node::Difference(list)
-        | Node::Intersection(list)
-        | Node::Hull(list) => list,
-        Node::Extrude { profile, .. }
-        | Node::Revolve { profile, .. }
-        | Node::OffsetProfile { profile, .. }
-        | Node::RoundProfile { profile, .. } => std::slice::from_ref(profile),
-        Node::Transform { child, .. } | Node::Tag { child, .. } | Node::Paint { child, .. } => {
-            std::slice::from_ref(child)
-        }
-        _ => &[],
     }
 }
 
@@ -205,14 +191,14 @@ struct Writer<'a> {
     graph: &'a ShapeGraph,
     tolerance: Tolerance,
     realized: &'a dyn Realized,
-    modules: FxHashMap<ShapeId, String>,
+    modules: FxHashMap<Stretched, String>,
     text: String,
 }
 
 impl Writer<'_> {
-    fn module(&mut self, name: &str, id: ShapeId) -> Result<(), ScadError> {
+    fn module(&mut self, name: &str, shape: Stretched) -> Result<(), ScadError> {
         let _ = writeln!(self.text, "module {name}() {{");
-        self.shape(id, 1)?;
+        self.shape(shape, 1)?;
         self.text.push_str("}\n\n");
         Ok(())
     }

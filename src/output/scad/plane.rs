@@ -5,10 +5,10 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::{ScadError, Writer, children};
+use super::{ScadError, Writer};
 use crate::{
     geom::Placement,
-    shape::{Node, ShapeId},
+    shape::{Node, ShapeId, Stretched},
 };
 
 /// Whether a placement maps the xy plane onto itself and keeps its upper side up.
@@ -64,7 +64,7 @@ impl Writer<'_> {
             if matches!(node, Node::Transform { placement, .. } if !keeps_plane(placement)) {
                 return false;
             }
-            rest.extend(children(node).iter().filter(|&&child| seen.insert(child)));
+            rest.extend(node.children().iter().filter(|&&child| seen.insert(child)));
         }
         true
     }
@@ -77,7 +77,7 @@ impl Writer<'_> {
             if let Node::Transform { placement: inner, .. } = node {
                 placement = placement.after(inner);
             }
-            at = children(node)[0];
+            at = node.children()[0];
         }
         frame(&placement).ok_or(ScadError::Flattened { shape: id })
     }
@@ -85,29 +85,29 @@ impl Writer<'_> {
     /// A profile as a figure in xy after `placement`, which takes its plane there.
     pub(super) fn figure(
         &mut self,
-        id: ShapeId,
+        shape: Stretched,
         placement: &Placement,
         depth: usize,
     ) -> Result<(), ScadError> {
-        if self.is_flat(id) {
+        if self.is_flat(shape.id) {
             let depth = depth + self.place(&within(placement), depth);
-            return self.shape(id, depth);
+            return self.shape(shape, depth);
         }
-        match self.graph.node(id).clone() {
+        match self.graph.node(shape.id).clone() {
             Node::Transform { placement: inner, child } => {
-                self.figure(child, &placement.after(&inner), depth)
+                self.figure(self.graph.part(shape, child), &placement.after(&inner), depth)
             }
             Node::OffsetProfile { profile, .. } | Node::RoundProfile { profile, .. } => {
                 let frame = self.frame_of(profile)?;
                 let depth = depth + self.place(&within(&placement.after(&frame)), depth);
-                let words = self.offsets(id);
+                let words = self.offsets(shape);
                 let deeper = self.prefixes(&words, depth);
-                self.figure(profile, &inverse(&frame), deeper)
+                self.figure(self.graph.part(shape, profile), &inverse(&frame), deeper)
             }
             node => {
                 self.open(&node, depth);
-                for &child in children(&node) {
-                    self.figure(child, placement, depth + 1)?;
+                for &child in node.children() {
+                    self.figure(self.graph.part(shape, child), placement, depth + 1)?;
                 }
                 self.line(depth, "}");
                 Ok(())

@@ -2,11 +2,11 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{ScadError, Writer, children, plane, points};
+use super::{ScadError, Writer, plane, points};
 use crate::{
-    geom::{Placement, Region, mesh::Color, sides},
+    geom::{Placement, Region, Tolerance, mesh::Color, sides},
     output::number::Shortest,
-    shape::{Node, ShapeId},
+    shape::{Node, ShapeId, Stretched},
 };
 
 /// What stands for nothing: a union of no children.
@@ -14,45 +14,46 @@ const NOTHING: &str = "union() {}";
 
 impl Writer<'_> {
     /// A shape as statements at a depth.
-    pub(super) fn shape(&mut self, id: ShapeId, depth: usize) -> Result<(), ScadError> {
-        if let Some(name) = self.modules.get(&id) {
+    pub(super) fn shape(&mut self, shape: Stretched, depth: usize) -> Result<(), ScadError> {
+        if let Some(name) = self.modules.get(&shape) {
             let call = format!("{name}();");
             self.line(depth, &call);
             return Ok(());
         }
-        let node = self.graph.node(id).clone();
+        let node = self.graph.node(shape.id).clone();
         match &node {
             Node::Extrude { profile, height, twist, scale } => {
-                let words = self.extrusion(*profile, *height, *twist, *scale)?;
+                let words = self.extrusion(shape, *profile, *height, *twist, *scale)?;
                 let frame = self.frame_of(*profile)?;
                 let depth = depth + self.place(&frame, depth);
                 self.line(depth, &words);
-                self.figure(*profile, &plane::inverse(&frame), depth + 1)
+                let profile = self.graph.part(shape, *profile);
+                self.figure(profile, &plane::inverse(&frame), depth + 1)
             }
             Node::Revolve { profile, angle, sides } => {
                 let frame = self.frame_of(*profile)?;
-                let words = self.revolution(*profile, *angle, *sides)?;
+                let words = self.revolution(shape, *profile, *angle, *sides)?;
                 let depth = self.prefixes(&words, depth);
-                self.figure(*profile, &plane::unrolled(&frame), depth)
+                self.figure(self.graph.part(shape, *profile), &plane::unrolled(&frame), depth)
             }
             Node::OffsetProfile { profile, .. } | Node::RoundProfile { profile, .. } => {
-                let words = self.offsets(id);
+                let words = self.offsets(shape);
                 let depth = self.prefixes(&words, depth);
-                self.shape(*profile, depth)
+                self.shape(self.graph.part(shape, *profile), depth)
             }
             Node::Transform { placement, child } => {
                 let depth = depth + self.place(placement, depth);
-                self.shape(*child, depth)
+                self.shape(self.graph.part(shape, *child), depth)
             }
-            node if children(node).is_empty() => {
-                let leaf = self.leaf(id)?;
+            node if node.children().is_empty() => {
+                let leaf = self.leaf(shape)?;
                 self.line(depth, &leaf);
                 Ok(())
             }
             node => {
                 self.open(node, depth);
-                for &child in children(node) {
-                    self.shape(child, depth + 1)?;
+                for &child in node.children() {
+                    self.shape(self.graph.part(shape, child), depth + 1)?;
                 }
                 self.line(depth, "}");
                 Ok(())
@@ -98,27 +99,28 @@ impl Writer<'_> {
     }
 
     /// `offset` in the words of OpenSCAD, outermost first.
-    pub(super) fn offsets(&self, id: ShapeId) -> Vec<String> {
-        let (steps, radius) = match *self.graph.node(id) {
+    pub(super) fn offsets(&self, shape: Stretched) -> Vec<String> {
+        let (steps, radius) = match *self.graph.node(shape.id) {
             Node::OffsetProfile { d, .. } => (vec![d], d.abs()),
             // Opening rounds convex corners, closing concave ones; the two middle steps are one.
             Node::RoundProfile { r, .. } => (vec![-r, 2.0 * r, -r], r),
             _ => (vec![], 1.0),
         };
-        let sides = sides::circle(radius, self.tolerance);
+        let sides = sides::circle(radius, self.tolerance_of(shape));
         steps.iter().map(|&r| format!("offset(r = {}, $fn = {sides})", Shortest(r))).collect()
     }
 
-    fn region(&self, shape: ShapeId, what: &'static str) -> Result<Region, ScadError> {
-        self.realized.region(shape).ok_or(ScadError::Unrealized { shape, what })
+    fn tolerance_of(&self, shape: Stretched) -> Tolerance {
+        self.tolerance.before(shape.stretch)
     }
 
-    fn circle_sides(&self, radius: f64, sides: Option<u32>) -> u32 {
-        sides.unwrap_or_else(|| sides::circle(radius, self.tolerance))
+    fn region(&self, shape: Stretched, what: &'static str) -> Result<Region, ScadError> {
+        self.realized.region(shape).ok_or(ScadError::Unrealized { shape: shape.id, what })
     }
 
     fn extrusion(
         &self,
+        shape: Stretched,
         profile: ShapeId,
         height: f64,
         twist: f64,
@@ -126,8 +128,8 @@ impl Writer<'_> {
     ) -> Result<String, ScadError> {
         let mut words = format!("linear_extrude(height = {}", Shortest(height));
         if twist != 0.0 || scale.x != scale.y {
-            let region = self.region(profile, "extruded profile")?;
-            let slices = sides::slices(&region, twist, scale, self.tolerance);
+            let region = self.region(self.graph.part(shape, profile), "extruded profile")?;
+            let slices = sides::slices(&region, twist, scale, self.tolerance_of(shape));
             words += &format!(", twist = {}, slices = {slices}", Shortest(-twist));
         }
         if scale != DVec2::ONE {
@@ -138,12 +140,13 @@ impl Writer<'_> {
 
     fn revolution(
         &self,
+        shape: Stretched,
         profile: ShapeId,
         angle: f64,
         sides: Option<u32>,
     ) -> Result<Vec<String>, ScadError> {
-        let region = self.region(profile, "revolved profile")?;
-        let count = sides::turned(&region, angle, sides, self.tolerance);
+        let region = self.region(self.graph.part(shape, profile), "revolved profile")?;
+        let count = sides::turned(&region, angle, sides, self.tolerance_of(shape));
         if angle == 360.0 {
             // A full turn starts at -x in OpenSCAD.
             let turn = "rotate([0, 0, 180])".to_string();
@@ -156,63 +159,71 @@ impl Writer<'_> {
         )])
     }
 
-    fn leaf(&self, id: ShapeId) -> Result<String, ScadError> {
-        Ok(match self.graph.node(id) {
+    fn leaf(&self, shape: Stretched) -> Result<String, ScadError> {
+        let tolerance = self.tolerance_of(shape);
+        Ok(match self.graph.node(shape.id) {
             Node::Box { min, max } => cuboid(*min, *max),
-            Node::Cone { r1, r2, h, sides } => self.cone(*r1, *r2, *h, *sides),
+            Node::Cone { r1, r2, h, sides } => {
+                let sides = sides.unwrap_or_else(|| sides::circle(r1.max(*r2), tolerance));
+                cone(*r1, *r2, *h, sides)
+            }
             Node::Sphere { r, sides } => {
-                let sides = sides.unwrap_or_else(|| sides::sphere(*r, self.tolerance));
+                let sides = sides.unwrap_or_else(|| sides::sphere(*r, tolerance));
                 format!("sphere(r = {}, $fn = {sides});", Shortest(*r))
             }
-            Node::Torus { major, minor, sides } => self.torus(*major, *minor, *sides),
+            Node::Torus { major, minor, sides } => {
+                let both = sides.map(|n| (n, n));
+                torus(
+                    *major,
+                    *minor,
+                    both.unwrap_or_else(|| sides::torus(*major, *minor, tolerance)),
+                )
+            }
             Node::Polyhedron { points: corners, faces } => {
                 points::polyhedron(corners, faces.iter().map(|face| &**face))
             }
             Node::Rect { size } => format!("square({}, center = true);", points::pair(*size)),
-            Node::Ellipse { radii, sides } => self.ellipse(*radii, *sides),
+            Node::Ellipse { radii, sides } => {
+                let largest = radii.max_element();
+                ellipse(*radii, sides.unwrap_or_else(|| sides::circle(largest, tolerance)))
+            }
             Node::Polygon { points: outer, holes } => {
                 points::polygon(std::iter::once(&**outer).chain(holes.iter().map(|h| &**h)))
             }
             Node::ImportSolid { .. } => {
-                let mesh = self.realized.mesh(id);
-                points::mesh(&mesh.ok_or(ScadError::Unrealized { shape: id, what: "import" })?)
+                let unmade = ScadError::Unrealized { shape: shape.id, what: "import" };
+                points::mesh(&self.realized.mesh(shape).ok_or(unmade)?)
             }
-            Node::Text(_) => points::region(&self.region(id, "text")?),
-            Node::ImportProfile { .. } => points::region(&self.region(id, "import")?),
+            Node::Text(_) => points::region(&self.region(shape, "text")?),
+            Node::ImportProfile { .. } => points::region(&self.region(shape, "import")?),
             _ => NOTHING.to_string(),
         })
     }
+}
 
-    fn cone(&self, r1: f64, r2: f64, h: f64, sides: Option<u32>) -> String {
-        let sides = self.circle_sides(r1.max(r2), sides);
-        let radii = if r1 == r2 {
-            format!("r = {}", Shortest(r1))
-        } else {
-            format!("r1 = {}, r2 = {}", Shortest(r1), Shortest(r2))
-        };
-        format!("cylinder(h = {}, {radii}, $fn = {sides});", Shortest(h))
-    }
+fn cone(r1: f64, r2: f64, h: f64, sides: u32) -> String {
+    let radii = if r1 == r2 {
+        format!("r = {}", Shortest(r1))
+    } else {
+        format!("r1 = {}, r2 = {}", Shortest(r1), Shortest(r2))
+    };
+    format!("cylinder(h = {}, {radii}, $fn = {sides});", Shortest(h))
+}
 
-    fn torus(&self, major: f64, minor: f64, sides: Option<u32>) -> String {
-        let (long, short) = match sides {
-            Some(sides) => (sides, sides),
-            None => sides::torus(major, minor, self.tolerance),
-        };
-        format!(
-            "rotate([0, 0, 180]) rotate_extrude($fn = {long}, convexity = 10) \
-             translate([{}, 0]) circle(r = {}, $fn = {short});",
-            Shortest(major),
-            Shortest(minor)
-        )
-    }
+fn torus(major: f64, minor: f64, (around, tube): (u32, u32)) -> String {
+    format!(
+        "rotate([0, 0, 180]) rotate_extrude($fn = {around}, convexity = 10) \
+         translate([{}, 0]) circle(r = {}, $fn = {tube});",
+        Shortest(major),
+        Shortest(minor)
+    )
+}
 
-    fn ellipse(&self, radii: DVec2, sides: Option<u32>) -> String {
-        let sides = self.circle_sides(radii.max_element(), sides);
-        if radii.x == radii.y {
-            format!("circle(r = {}, $fn = {sides});", Shortest(radii.x))
-        } else {
-            format!("scale({}) circle(r = 1, $fn = {sides});", points::pair(radii))
-        }
+fn ellipse(radii: DVec2, sides: u32) -> String {
+    if radii.x == radii.y {
+        format!("circle(r = {}, $fn = {sides});", Shortest(radii.x))
+    } else {
+        format!("scale({}) circle(r = 1, $fn = {sides});", points::pair(radii))
     }
 }
 

@@ -133,3 +133,29 @@ fn lines_end_at_the_window() {
     let round = drawn(&[sphere(10.0, 64)], &camera, Method::Auto);
     assert!(near(round.visible, 10.0 * std::f64::consts::PI, 1e-7), "{}", round.visible);
 }
+
+#[test]
+fn the_far_rim_is_seen_through_a_hole() {
+    let direction = DVec3::new(0.2, -0.1, 1.0);
+    let camera = Camera::parallel(direction).expect("a direction");
+    let image = |p: DVec3| camera.project(p).expect("parallel");
+    // Edges of the slab, of which three are hidden, and the rims: what is seen of the lower one is over it in the
+    // upper circle.
+    let [x, y, z] = DVec3::AXES.map(|axis| image(axis).length());
+    let edges = 3.0 * (120.0 * x + 120.0 * y + 10.0 * z);
+    let count = 20_000;
+    let (mut upper, mut lower) = (0.0, 0.0);
+    for i in 0..count {
+        let at = |k: i32| {
+            let (sin, cos) = libm::sincos(f64::from(k) * std::f64::consts::TAU / f64::from(count));
+            DVec3::new(cos, sin, 0.0) * 4.0
+        };
+        let length = image(at(i)).distance(image(at(i + 1)));
+        let over = (at(i) + at(i + 1)) / 2.0 + direction * 10.0;
+        upper += length;
+        lower += if over.truncate().length() < 4.0 { length } else { 0.0 };
+    }
+    let found = drawn(&[plate(24)], &camera, Method::Auto);
+    let known = edges + 100.0 * (upper + lower);
+    assert!(lower > 1.0 && near(found.visible, known, 2e-5), "{} not {known}", found.visible);
+}

@@ -153,11 +153,12 @@ fn what_a_file_offers() {
     assert!(matches!(evaluator.graph().node(main), Node::Union(list) if list.len() == 2));
     let exports = evaluator.exports(id);
     assert_eq!(exports[0].file.as_deref(), Some("lip.3mf"));
-    assert_eq!(exports[0].outputs.len(), 1);
-    let names: Vec<String> =
-        evaluator.export_products(id, 0).expect("parts").into_iter().map(|p| p.0).collect();
+    let parts = evaluator.export_products(id, 0).expect("parts");
+    let names: Vec<&str> = parts.iter().map(|part| &*part.name).collect();
     assert_eq!(names, ["clip", "other"]);
-    assert_eq!(evaluator.export_products(id, 1).expect("one part")[0].0, "list");
+    assert_eq!((parts[0].output.as_deref(), &parts[1].output), (Some("clip"), &None));
+    let part = &evaluator.export_products(id, 1).expect("one part")[0];
+    assert_eq!((&*part.name, &part.output), ("list", &None));
     assert_eq!(evaluator.tolerance(id), Some(0.02));
     assert!(evaluator.take_diagnostics().is_empty());
     assert!(evaluator.product_of(id, "clop").is_err());

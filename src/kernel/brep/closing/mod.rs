@@ -5,6 +5,7 @@
 //! Half-edge 3 t + k runs from corner k of triangle t to the next corner.
 
 mod coplanar;
+mod doubled;
 mod shells;
 mod twins;
 
@@ -35,8 +36,9 @@ pub(super) fn close(mesh: &PolyMesh) -> Result<Polyhedron, Defect> {
         return Err(Defect::NotFinite { point: point as u32 });
     }
     let mut soup = Soup::new(mesh);
-    let mut twin = twins::pair(&mut soup)?;
+    let (mut twin, crowded) = twins::pair(&mut soup)?;
     twins::split_fans(&mut soup, &twin);
+    doubled::split(&mut soup, &mut twin, crowded);
     shells::turn_outwards(&mut soup, &mut twin);
     Ok(Polyhedron::trusted(coplanar::merge(&soup, &twin, mesh.origins(), SINGLE_PRECISION)))
 }
@@ -45,7 +47,7 @@ pub(super) fn close(mesh: &PolyMesh) -> Result<Polyhedron, Defect> {
 pub(super) fn merged(points: Vec<DVec3>, triangles: Vec<[u32; 3]>, origin: Origin) -> PolyMesh {
     let mut soup = Soup { points, origin: vec![0; triangles.len()], triangles };
     match twins::pair(&mut soup) {
-        Ok(twin) => coplanar::merge(&soup, &twin, &[origin], DOUBLE_PRECISION),
+        Ok((twin, _)) => coplanar::merge(&soup, &twin, &[origin], DOUBLE_PRECISION),
         Err(defect) => unreachable!("closed triangles have neighbours: {defect}"),
     }
 }
@@ -73,13 +75,17 @@ impl Soup {
         self.start(following(half_edge))
     }
 
+    fn ends(&self, half_edge: u32) -> [u32; 2] {
+        [self.start(half_edge), self.end(half_edge)]
+    }
+
     /// The corners of a triangle as points.
     fn corners(&self, triangle: usize) -> [DVec3; 3] {
         self.triangles[triangle].map(|c| self.points[c as usize])
     }
 
     fn middle(&self, half_edge: u32) -> DVec3 {
-        let [a, b] = [self.start(half_edge), self.end(half_edge)];
+        let [a, b] = self.ends(half_edge);
         (self.points[a as usize] + self.points[b as usize]) / 2.0
     }
 

@@ -48,9 +48,9 @@ impl Groups {
 
 /// For each half-edge the one that runs back along it in the neighbouring triangle. Triangles that face
 /// the other way than their neighbours are turned over; where four or more meet at an edge, those with
-/// material between them are neighbours. Fails when an edge has an odd number of triangles, or the surface
-/// has one side only.
-pub(super) fn pair(soup: &mut Soup) -> Result<Vec<u32>, Defect> {
+/// material between them are neighbours, and a half-edge of each such pair is given too. Fails when an edge has
+/// an odd number of triangles, or the surface has one side only.
+pub(super) fn pair(soup: &mut Soup) -> Result<(Vec<u32>, Vec<u32>), Defect> {
     let mut groups = Groups::new(soup);
     refuse(soup, &groups, |group| group.len() % 2 == 1)?;
     let opposite = |g: &[u32]| soup.start(g[0]) != soup.start(g[1]);
@@ -62,13 +62,18 @@ pub(super) fn pair(soup: &mut Soup) -> Result<Vec<u32>, Defect> {
     refuse(soup, &groups, |g| 2 * g.iter().filter(|&&h| forward(h)).count() != g.len())?;
     let mut twin = vec![NONE; 3 * soup.triangles.len()];
     let mut join = |a: u32, b: u32| (twin[a as usize], twin[b as usize]) = (b, a);
+    let mut crowded = vec![];
     for group in groups.iter() {
-        match *group {
-            [a, b] => join(a, b),
-            _ => radial_pairs(soup, group).into_iter().for_each(|(a, b)| join(a, b)),
+        if let [a, b] = *group {
+            join(a, b);
+            continue;
+        }
+        for (a, b) in radial_pairs(soup, group) {
+            join(a, b);
+            crowded.push(a);
         }
     }
-    Ok(twin)
+    Ok((twin, crowded))
 }
 
 /// An error if any group of half-edges is bad.

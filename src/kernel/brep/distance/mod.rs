@@ -29,8 +29,10 @@ pub fn point(solid: &Polyhedron, p: DVec3) -> Option<f64> {
 
 /// Distance in mm between two solids, the exact minimum over their triangles; `None` if one is empty.
 ///
-/// Negative when they overlap: then it is the depth, within [`ACCURACY`], of the deepest point that the
-/// boundary of one has inside the other. 0 when they touch, and when they are the same solid.
+/// Negative where a part of the boundary of one lies inside the other: then it is the depth, within
+/// [`ACCURACY`], of the deepest point of that part. So it is 0 when they touch, and when they are the same
+/// solid: a solid moved out of itself is as deep in itself as it has moved, so that the distance changes
+/// steadily. Pieces in common whose boundaries are the same do not count for the same reason.
 ///
 /// ```
 /// use glam::{DVec3, dvec3};
@@ -137,6 +139,22 @@ mod tests {
         let cross = cuboid(dvec3(-9.0, -1.0, -1.0), dvec3(9.0, 1.0, 1.0));
         let other = cuboid(dvec3(-2.0, -9.0, -2.0), dvec3(2.0, 9.0, 2.0));
         assert!(solids(&cross, &other).expect("not empty") < -0.9);
+    }
+
+    #[test]
+    fn the_distance_from_itself_is_the_end_of_small_moves() {
+        for solid in [cuboid(DVec3::ZERO, dvec3(4., 3., 2.)), torus(5.0, 2.0, 24, 16)] {
+            assert_eq!(solids(&solid, &solid), Some(0.0));
+            for step in [0.5, 0.1, 0.01] {
+                let depth = -solids(&solid, &moved(&solid, dvec3(0., 0., step))).expect("full");
+                assert!(depth > 0.9 * step && depth < 1.001 * step, "{step}: {depth}");
+            }
+        }
+        // The same block in both, and one of them has another one.
+        let block = cuboid(DVec3::ZERO, DVec3::splat(2.0));
+        let mut two = block.mesh().clone();
+        two.append(moved(&block, dvec3(9.0, 0.0, 0.0)).mesh());
+        assert_eq!(solids(&block, &Polyhedron::new(two).expect("closed")), Some(0.0));
     }
 
     #[test]

@@ -1,0 +1,140 @@
+//! The surfaces of a mesh: which faces belong to one, and which of them are round.
+
+use super::{
+    field::Field,
+    lattice::Plane,
+    links::{NONE, each_side},
+};
+use crate::geom::{PolyMesh, Surface, Tolerance};
+
+/// Facets stand for their surface when they are within the tolerance, and this factor of it where set operations
+/// cut them across.
+const FAITHFUL: f64 = 1.5;
+
+/// A surface and which side of it is outside.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Patch {
+    /// The surface.
+    pub field: Field,
+    /// 1 where the gradient points outwards, else -1.
+    pub outward: f64,
+}
+
+/// The patches of a mesh.
+#[derive(Clone, Debug)]
+pub struct Patches {
+    /// Each patch once.
+    pub list: Vec<Patch>,
+    /// The patch of each face.
+    pub of_face: Vec<u32>,
+}
+
+/// Which origins are round surfaces that their facets keep to.
+pub fn faithful_origins(mesh: &PolyMesh, tolerance: Tolerance) -> Vec<bool> {
+    let most = tolerance.mm() * FAITHFUL;
+    let flat = |s: &Surface| matches!(s, Surface::Plane | Surface::Facets);
+    let mut round: Vec<bool> = mesh.origins().iter().map(|o| !flat(&o.surface)).collect();
+    if !round.contains(&true) {
+        return round;
+    }
+    each_side(mesh, |face, a, b| {
+        let origin = mesh.face(face as usize).origin_index() as usize;
+        if round[origin] {
+            let field = Field::Round(mesh.origins()[origin].surface);
+            let [p, q] = [a, b].map(|i| mesh.points[i as usize]);
+            round[origin] = field.slope((p + q) / 2.0).0.abs() <= most;
+        }
+    });
+    round
+}
+
+impl Patches {
+    /// The surfaces of a mesh, numbered: flat faces by their plane, round ones by surface and outside.
+    pub fn new(mesh: &PolyMesh, round: &[bool]) -> Patches {
+        let mut patches = Patches { list: vec![], of_face: vec![] };
+        let mut of_plane = vec![NONE; mesh.plane_count() as usize];
+        let mut of_origin = vec![[NONE; 2]; round.len()];
+        for face in mesh.faces() {
+            let normal = face.area_vector().normalize_or_zero();
+            let on = mesh.points[face.outer()[0] as usize];
+            let origin = face.origin_index() as usize;
+            let patch = if round[origin] {
+                let field = Field::Round(face.origin().surface);
+                let inside = field.slope(on).1.dot(normal) < 0.0;
+                let outward = if inside { -1.0 } else { 1.0 };
+                let known = &mut of_origin[origin][usize::from(inside)];
+                if *known == NONE {
+                    *known = numbered(&mut patches.list, Patch { field, outward });
+                }
+                *known
+            } else {
+                let known = &mut of_plane[face.plane() as usize];
+                if *known == NONE {
+                    let field = Field::Flat(Plane { normal, offset: normal.dot(on) });
+                    *known = patches.list.len() as u32;
+                    patches.list.push(Patch { field, outward: 1.0 });
+                }
+                *known
+            };
+            patches.of_face.push(patch);
+        }
+        patches
+    }
+
+    /// Whether a patch is round.
+    pub fn is_round(&self, patch: u32) -> bool {
+        matches!(self.list[patch as usize].field, Field::Round(_))
+    }
+}
+
+/// The number of a patch, the same for the same surface.
+fn numbered(patches: &mut Vec<Patch>, patch: Patch) -> u32 {
+    let known = patches.iter().position(|p| *p == patch);
+    known.unwrap_or_else(|| {
+        patches.push(patch);
+        patches.len() - 1
+    }) as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::geom::{Origin, trig::unit_circle};
+
+    /// A prism in a cylinder of radius 10 about z.
+    fn cylinder(sides: u32) -> PolyMesh {
+        let ring = |z: f64| (0..sides).map(move |i| (unit_circle(sides, i) * 10.0).extend(z));
+        let mut mesh = PolyMesh::with_points(ring(0.0).chain(ring(5.0)).collect());
+        let flat = mesh.add_origin(Origin::of(Surface::Plane));
+        let side = Surface::Cylinder { point: DVec3::ZERO, axis: DVec3::Z, radius: 10.0 };
+        let round = mesh.add_origin(Origin::of(side));
+        let [bottom, top] = [mesh.add_plane(), mesh.add_plane()];
+        mesh.push_face(&[(0..sides).rev().collect::<Vec<_>>()], bottom, flat);
+        mesh.push_face(&[(sides..2 * sides).collect::<Vec<_>>()], top, flat);
+        for i in 0..sides {
+            let (j, plane) = ((i + 1) % sides, mesh.add_plane());
+            mesh.push_face(&[[i, j, sides + j, sides + i]], plane, round);
+        }
+        mesh
+    }
+
+    #[test]
+    fn a_cylinder_has_three_surfaces() {
+        let mesh = cylinder(32);
+        let round = faithful_origins(&mesh, Tolerance::DEFAULT);
+        assert_eq!(round, [false, true]);
+        let patches = Patches::new(&mesh, &round);
+        assert_eq!((patches.list.len(), patches.of_face.len()), (3, 34));
+        assert_eq!((0..3).filter(|&p| patches.is_round(p)).count(), 1);
+        assert!(patches.list.iter().all(|p| p.outward == 1.0));
+    }
+
+    #[test]
+    fn coarse_facets_stand_for_themselves() {
+        assert_eq!(faithful_origins(&cylinder(6), Tolerance::DEFAULT), [false, false]);
+        let patches = Patches::new(&cylinder(6), &[false, false]);
+        assert_eq!(patches.list.len(), 8);
+    }
+}
