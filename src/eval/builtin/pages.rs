@@ -79,9 +79,14 @@ fn size(args: &Args) -> Outcome<(DVec2, Option<Arc<str>>)> {
     }
 }
 
-/// The page of the first argument, changed.
-fn changed(args: &Args, change: impl FnOnce(&mut PageSpec)) -> Outcome<Value> {
+/// The page of the first argument, changed. The copy is counted.
+fn changed(
+    evaluator: &mut Evaluator,
+    args: &Args,
+    change: impl FnOnce(&mut PageSpec),
+) -> Outcome<Value> {
     let Value::Page(page) = args.value(0) else { return args.wrong(0, "a page") };
+    evaluator.tick(page.views.len() as u64, args.call)?;
     let mut page = PageSpec::clone(page);
     change(&mut page);
     Ok(Value::Page(Arc::new(page)))
@@ -112,21 +117,26 @@ fn place_beside(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
     place(evaluator, args, Position::Beside { other, gap: args.not_negative(3)? }, 4)
 }
 
-fn place(evaluator: &Evaluator, args: &Args, position: Position, scale: usize) -> Outcome<Value> {
+fn place(
+    evaluator: &mut Evaluator,
+    args: &Args,
+    position: Position,
+    scale: usize,
+) -> Outcome<Value> {
     let view = drawing(args, 1)?.clone();
     let scale = match position {
         Position::At(_) if args.given(scale) => Some(args.positive(scale)?),
         _ => None,
     };
     let place = Place(evaluator.shown_at(args.span(1)));
-    changed(args, |page| page.views.push(Placed { view, position, scale, place }))
+    changed(evaluator, args, |page| page.views.push(Placed { view, position, scale, place }))
 }
 
 /// `page, title, fields`.
-fn title(_: &mut Evaluator, args: &Args) -> Outcome<Value> {
+fn title(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
     let title = args.text(1)?.into();
     let Value::Record(record) = args.value(2) else { return args.wrong(2, "a record") };
     let fields = record.fields().iter();
     let fields = fields.map(|(key, value)| (key.clone(), value.to_string().into())).collect();
-    changed(args, |page| page.title = Some(TitleSpec { title, fields }))
+    changed(evaluator, args, |page| page.title = Some(TitleSpec { title, fields }))
 }

@@ -359,38 +359,44 @@ fn section_of_shapes(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
     Ok(Value::Drawing(Arc::new(spec)))
 }
 
-/// A view with a change.
-fn changed(args: &Args, change: impl FnOnce(&mut ViewSpec)) -> Outcome<Value> {
+/// A view with a change. The copy is counted, so that a long chain of changes has its limit.
+fn changed(
+    evaluator: &mut Evaluator,
+    args: &Args,
+    change: impl FnOnce(&mut ViewSpec),
+) -> Outcome<Value> {
     let Value::Drawing(view) = args.value(0) else { return args.wrong(0, "a drawing") };
+    let copied = view.shapes.len() + view.curves.len() + view.dims.len();
+    evaluator.tick(copied as u64, args.call)?;
     let mut view = ViewSpec::clone(view);
     change(&mut view);
     Ok(Value::Drawing(Arc::new(view)))
 }
 
-fn section_of_view(_: &mut Evaluator, args: &Args) -> Outcome<Value> {
+fn section_of_view(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
     let (plane, _) = plane(args, 1)?;
     if let Value::Drawing(view) = args.value(0)
         && view.section.is_some()
     {
         return args.fail(0, Code::BadCall, "the view is a section already");
     }
-    changed(args, |view| view.section = Some(plane))
+    changed(evaluator, args, |view| view.section = Some(plane))
 }
 
-fn center_lines(_: &mut Evaluator, args: &Args) -> Outcome<Value> {
-    changed(args, |view| view.center_lines = true)
+fn center_lines(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
+    changed(evaluator, args, |view| view.center_lines = true)
 }
 
 /// A view with one dimension more, whose text is argument `text`.
 fn dimensioned(
-    evaluator: &Evaluator,
+    evaluator: &mut Evaluator,
     args: &Args,
     text: usize,
     measured: Measured,
 ) -> Outcome<Value> {
     let text = if args.given(text) { Some(args.text(text)?.into()) } else { None };
     let place = Place(evaluator.shown_at(args.call));
-    changed(args, |view| view.dims.push(DimSpec { measured, text, place }))
+    changed(evaluator, args, |view| view.dims.push(DimSpec { measured, text, place }))
 }
 
 /// `view, from, to, offset, along, text`.
@@ -405,7 +411,12 @@ fn dim_chain(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
     linear(evaluator, args, items.iter().filter_map(coordinates).collect(), 2)
 }
 
-fn linear(evaluator: &Evaluator, args: &Args, points: Vec<DVec3>, offset: usize) -> Outcome<Value> {
+fn linear(
+    evaluator: &mut Evaluator,
+    args: &Args,
+    points: Vec<DVec3>,
+    offset: usize,
+) -> Outcome<Value> {
     if points.len() < 2 || points.windows(2).any(|pair| pair[0] == pair[1]) {
         return fail(
             Code::Degenerate,
