@@ -170,6 +170,9 @@ impl<'s> Model<'s> {
     ) -> Option<Artifact> {
         let (parts, _) = self.products(names, diagnostics);
         diagnostics.extend(self.check(names));
+        if parts.is_empty() && !diagnostics.iter().any(Diagnostic::is_error) {
+            diagnostics.push(Diagnostic::error(Code::Usage, "the model has no part to draw"));
+        }
         let span = parts.first()?.span;
         let stem = Path::new(file).file_stem().unwrap_or_default();
         let name = stem.to_string_lossy().into_owned();
