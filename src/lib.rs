@@ -1,7 +1,7 @@
 //! Katachi (形, *shape*): a small declarative language for solid modelling.
 //!
 //! A `.kata` file is lexed, parsed and evaluated into a graph of shapes, the graph is realised as exact
-//! polyhedra, and these are written as meshes. This page is the floor plan and a tour; the language
+//! polyhedra, and these are written as meshes or drawn as lines on paper. This page is the floor plan and a tour; the language
 //! itself is described in the README, `grammar/katachi.ebnf` and the library in `stdlib/`.
 //!
 //! # A tour
@@ -64,7 +64,7 @@
 //! | [`input`] | readers of meshes, drawings and values |
 //! | [`kernel`] | exact polyhedra ([`kernel::brep`]) and plane figures ([`kernel::profile`]) |
 //! | [`realize`] | graph to solids |
-//! | [`output`] | writers of mesh files and OpenSCAD source; visible and hidden lines ([`output::drawing`]) |
+//! | [`output`] | writers of mesh files and OpenSCAD source, drawings ([`output::drawing`]) and the sheets they stand on ([`output::sheet`]) |
 //! | [`session`] | the one road through it all |
 //! | [`app`] | the command line, the only room that touches files, clock and terminal |
 //!

@@ -17,11 +17,15 @@ pub const ROOT_MARK: &str = "katachi.toml";
 /// The name under which standard input is read and shown.
 pub const STDIN: &str = "<stdin>";
 
+/// The name of a model that only imports a mesh.
+const IMPORT: &str = "<import>";
+
 /// Files under a root folder. Symbolic links may not lead out of it.
 #[derive(Debug)]
 pub struct Disk {
     root: PathBuf,
-    stdin: Option<Vec<u8>>,
+    /// A file that is not on the disk: its name and bytes.
+    held: Option<(&'static str, Vec<u8>)>,
 }
 
 impl Disk {
@@ -34,7 +38,7 @@ impl Disk {
             let root = canonical(root.unwrap_or(Path::new(".")))?;
             let stdin =
                 limited(io::stdin().lock(), 0).map_err(|e| format!("standard input: {e}"))?;
-            return Ok((Disk { root, stdin: Some(stdin) }, STDIN.to_string()));
+            return Ok((Disk { root, held: Some((STDIN, stdin)) }, STDIN.to_string()));
         }
         let path = Path::new(file);
         let name = path.file_name().ok_or_else(|| format!("`{file}` does not name a file"))?;
@@ -48,7 +52,21 @@ impl Disk {
         let inside = entry.strip_prefix(&root);
         let inside = inside.map_err(|_| format!("`{file}` lies outside the root given"))?;
         let entry = inside.to_string_lossy().replace('\\', "/");
-        Ok((Disk { root, stdin: None }, entry))
+        Ok((Disk { root, held: None }, entry))
+    }
+
+    /// Adds a model that imports a mesh, and returns its path.
+    pub fn import(&mut self, mesh: &str) -> String {
+        let quoted: String = mesh
+            .chars()
+            .map(|c| match c {
+                '"' | '\\' => format!("\\{c}"),
+                '{' | '}' => format!("{c}{c}"),
+                c => c.to_string(),
+            })
+            .collect();
+        self.held = Some((IMPORT, format!("import(\"{quoted}\")").into_bytes()));
+        IMPORT.to_string()
     }
 
     /// The root folder, absolute and free of symbolic links.
@@ -71,7 +89,7 @@ impl Disk {
 
 impl World for Disk {
     fn read(&self, path: &str) -> Result<Vec<u8>, FileError> {
-        if let (STDIN, Some(bytes)) = (path, &self.stdin) {
+        if let Some((_, bytes)) = self.held.as_ref().filter(|(name, _)| *name == path) {
             return Ok(bytes.clone());
         }
         let found = self.locate(path)?;

@@ -22,6 +22,7 @@ const PRELUDE: &[(&str, &str)] = &[
     ("std/solids", include_str!("../../stdlib/solids.kata")),
     ("std/strings", include_str!("../../stdlib/strings.kata")),
     ("std/testing", include_str!("../../stdlib/testing.kata")),
+    ("std/views", include_str!("../../stdlib/views.kata")),
 ];
 
 /// The files that a model may `use`.

@@ -27,6 +27,6 @@ pub use dimension::Dimension;
 pub use evaluator::{Evaluator, Host, Limits, Loaded, Override};
 pub use instance::InstanceId;
 pub use nearest::{here_called, nearest};
-pub use outputs::{Domain, ExportInfo, ExportPart, OutputInfo, ParamInfo};
+pub use outputs::{Domain, ExportInfo, ExportPart, OutputInfo, ParamInfo, Product};
 pub use testing::{TestInfo, TestOutcome, Write};
 pub use value::Value;

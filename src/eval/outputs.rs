@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     base::{Code, Diagnostic, Span},
-    shape::ShapeId,
+    shape::{PageSpec, ShapeId, ViewSpec},
     syntax::ast::OutputKind,
 };
 
@@ -71,6 +71,27 @@ pub struct OutputInfo {
     pub doc: Option<Arc<str>>,
 }
 
+/// What an output is.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Product {
+    /// A solid or plane figure.
+    Shape(ShapeId),
+    /// A view.
+    View(Arc<ViewSpec>),
+    /// A page.
+    Sheet(Arc<PageSpec>),
+}
+
+impl Product {
+    /// The shape, if it is one.
+    pub fn shape(&self) -> Option<ShapeId> {
+        match self {
+            Product::Shape(shape) => Some(*shape),
+            _ => None,
+        }
+    }
+}
+
 /// An `export` of a file.
 #[derive(Clone, PartialEq, Debug)]
 pub struct ExportInfo {
@@ -81,13 +102,13 @@ pub struct ExportInfo {
     pub span: Span,
 }
 
-/// A shape that an export writes.
+/// What an export writes.
 #[derive(Clone, PartialEq, Debug)]
 pub struct ExportPart {
     /// Its name in the file.
     pub name: String,
     /// What it is.
-    pub shape: ShapeId,
+    pub product: Product,
     /// The output it is, where the export or a field of its record says so by name: `= a`,
     /// `= { lid, base = a }`. An expression, such as `a + b` or `[a, b]`, is a shape of its own.
     pub output: Option<Arc<str>>,
@@ -209,13 +230,13 @@ impl Evaluator<'_> {
 
     /// Evaluates one output; what goes wrong is recorded and does not touch other outputs.
     #[expect(clippy::result_unit_err, reason = "the reason is among the diagnostics")]
-    pub fn shape_of(&mut self, instance: InstanceId, output: &str) -> Result<ShapeId, ()> {
+    pub fn product_of(&mut self, instance: InstanceId, output: &str) -> Result<Product, ()> {
         self.steps_taken = 0;
-        let result = self.output_shape(instance, output);
+        let result = self.output_product(instance, output);
         result.map_err(|failure| self.report(&failure))
     }
 
-    fn output_shape(&mut self, instance: InstanceId, output: &str) -> Outcome<ShapeId> {
+    fn output_product(&mut self, instance: InstanceId, output: &str) -> Outcome<Product> {
         self.admitted(instance)?;
         let unit = self.unit_of(instance);
         let named = unit.globals.iter().position(|global| {
@@ -224,13 +245,16 @@ impl Evaluator<'_> {
         if let Some(number) = named {
             let at = unit.globals[number].name.span;
             let value = self.global(instance, number as u32, at)?;
-            return self.as_shape(&value, at)?.map_or_else(|| self.empty_solid(output, at), Ok);
+            return match self.as_product(&value, at)? {
+                Some(product) => Ok(product),
+                None => self.empty_solid(output, at).map(Product::Shape),
+            };
         }
         let anonymous = unit.globals.iter().enumerate();
         let anonymous = anonymous.filter(|(_, global)| global.kind == GlobalKind::Anonymous);
         let anonymous: Vec<u32> = anonymous.map(|(number, _)| number as u32).collect();
         if unit.stem() == output && !anonymous.is_empty() {
-            return self.anonymous_shape(instance, &unit, &anonymous);
+            return self.anonymous_shape(instance, &unit, &anonymous).map(Product::Shape);
         }
         let names: Vec<Arc<str>> =
             self.outputs(instance).into_iter().map(|info| info.name).collect();
@@ -241,6 +265,15 @@ impl Evaluator<'_> {
             None => error.note(format!("its outputs are {}", names.join(", "))),
         }
         .into())
+    }
+
+    /// What a value is as an output; `None` when it is none.
+    fn as_product(&mut self, value: &Value, at: Span) -> Outcome<Option<Product>> {
+        Ok(match value {
+            Value::Drawing(view) => Some(Product::View(view.clone())),
+            Value::Page(page) => Some(Product::Sheet(page.clone())),
+            value => self.as_shape(value, at)?.map(Product::Shape),
+        })
     }
 
     /// What an output is whose list holds no shape.
@@ -302,9 +335,9 @@ impl Evaluator<'_> {
         exports
     }
 
-    /// The named shapes that an export writes: one, or the fields of a record.
+    /// The named things that an export writes: one, or the fields of a record.
     #[expect(clippy::result_unit_err, reason = "the reason is among the diagnostics")]
-    pub fn export_shapes(
+    pub fn export_products(
         &mut self,
         instance: InstanceId,
         index: usize,
@@ -324,27 +357,34 @@ impl Evaluator<'_> {
         let file = self.eval_in(instance, export.file, global.frame)?.to_string();
         if let Value::Record(record) = &value {
             if record.fields().is_empty() {
-                return fail(Code::WrongKind, at, "an export needs a shape, got an empty record");
+                return fail(
+                    Code::WrongKind,
+                    at,
+                    "an export needs something to write, got an empty record",
+                );
             }
             let mut parts = vec![];
             for (name, value) in record.fields() {
-                let shape = self.export_shape(value, at, name)?;
+                let product = self.export_product(value, at, name)?;
                 let output = unit.field(global.value, name).and_then(|code| unit.output(code));
-                parts.push(ExportPart { name: name.to_string(), shape, output });
+                parts.push(ExportPart { name: name.to_string(), product, output });
             }
             return Ok(parts);
         }
         let output = unit.output(global.value);
         let name = output.as_ref().map_or_else(|| file_stem(&file), |name| name.to_string());
-        let shape = self.export_shape(&value, at, &name)?;
-        Ok(vec![ExportPart { name, shape, output }])
+        let product = self.export_product(&value, at, &name)?;
+        Ok(vec![ExportPart { name, product, output }])
     }
 
-    fn export_shape(&mut self, value: &Value, at: Span, name: &str) -> Outcome<ShapeId> {
-        match self.as_shape(value, at)? {
-            Some(shape) => Ok(shape),
+    fn export_product(&mut self, value: &Value, at: Span, name: &str) -> Outcome<Product> {
+        match self.as_product(value, at)? {
+            Some(product) => Ok(product),
             None => {
-                let words = format!("an export needs a shape for `{name}`, got {}", shown(value));
+                let words = format!(
+                    "an export needs a shape, drawing or page for `{name}`, got {}",
+                    shown(value)
+                );
                 fail(Code::WrongKind, at, words)
             }
         }

@@ -46,6 +46,12 @@ pub enum Type {
     Shape,
     /// The type or `NONE`.
     Optional(Box<Type>),
+    /// A curve.
+    Curve,
+    /// A drawing.
+    Drawing,
+    /// A page.
+    Page,
     /// A list of two or three lengths.
     Point,
     /// A list of two or three numbers of one dimension.
@@ -54,8 +60,8 @@ pub enum Type {
 
 const NAMES: &[&str] = &[
     "Any", "Number", "Length", "Angle", "Area", "Volume", "Quantity", "Count", "Bool", "String",
-    "List", "Record", "Range", "Function", "Solid", "Profile", "Shape", "Optional", "Point",
-    "Vector",
+    "List", "Record", "Range", "Function", "Solid", "Profile", "Shape", "Curve", "Drawing", "Page",
+    "Optional", "Point", "Vector",
 ];
 
 /// Why a value does not fit.
@@ -87,6 +93,9 @@ impl Type {
             "Solid" => Type::Solid,
             "Profile" => Type::Profile,
             "Shape" => Type::Shape,
+            "Curve" => Type::Curve,
+            "Drawing" => Type::Drawing,
+            "Page" => Type::Page,
             "Point" => Type::Point,
             "Vector" => Type::Vector,
             "List" | "Optional" => return Type::read_generic(written),
@@ -122,6 +131,9 @@ impl Type {
             | (Type::Record, Value::Record(_) | Value::Module(_))
             | (Type::Range, Value::Range(_))
             | (Type::Function, Value::Function(_))
+            | (Type::Curve, Value::Curve(_))
+            | (Type::Drawing, Value::Drawing(_))
+            | (Type::Page, Value::Page(_))
             | (Type::Optional(_), Value::Symbol(Symbol::None)) => Ok(()),
             (Type::Optional(inner), value) => inner.check(graph, value),
             (Type::Number(needed), Value::Number(_, found)) => {
@@ -337,6 +349,9 @@ impl Type {
             Type::Solid => "a solid".into(),
             Type::Profile => "a profile".into(),
             Type::Shape => "a solid or a profile".into(),
+            Type::Curve => "a curve".into(),
+            Type::Drawing => "a drawing".into(),
+            Type::Page => "a page".into(),
             Type::Optional(inner) => inner.words(),
             Type::Point => "a point (two or three lengths)".into(),
             Type::Vector => "a vector (two or three numbers)".into(),
@@ -413,6 +428,9 @@ impl fmt::Display for Type {
             Type::Solid => "Solid",
             Type::Profile => "Profile",
             Type::Shape => "Shape",
+            Type::Curve => "Curve",
+            Type::Drawing => "Drawing",
+            Type::Page => "Page",
             Type::Point => "Point",
             Type::Vector => "Vector",
         };

@@ -1,16 +1,22 @@
 //! Files to be written: which shapes go into which, and their bytes.
 
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
+use super::{
+    drafting::{Drafter, Letterer},
+    sheet::page,
+};
 use crate::{
     base::{Code, Diagnostic, Span},
+    eval::Product,
     geom::{PolyMesh, Region},
     output::{
         mesh::{self, MeshFormat, NamedMesh},
         scad,
+        sheet::{self, DrawingFormat, Page},
     },
     realize::Realizer,
-    shape::{ShapeGraph, ShapeId, Stretched},
+    shape::{PageSpec, ShapeGraph, ShapeId, Stretched, ViewSpec},
 };
 
 /// What a file is written as.
@@ -20,40 +26,49 @@ pub enum Format {
     Mesh(MeshFormat),
     /// OpenSCAD source.
     Scad,
+    /// A drawing.
+    Drawing(DrawingFormat),
 }
 
 impl Format {
     /// The format of a name on the command line, such as `stl-ascii`.
     pub fn from_name(name: &str) -> Option<Format> {
-        match name.eq_ignore_ascii_case("scad") {
-            true => Some(Format::Scad),
-            false => MeshFormat::from_name(name).map(Format::Mesh),
-        }
+        let other = || Format::of_paper(name).or(Format::of_source(name));
+        MeshFormat::from_name(name).map(Format::Mesh).or_else(other)
     }
 
     /// The format of a file name, by its extension.
     pub fn of_file(file: &str) -> Option<Format> {
         let extension = Path::new(file).extension()?.to_str()?;
-        match extension.eq_ignore_ascii_case("scad") {
-            true => Some(Format::Scad),
-            false => MeshFormat::from_extension(extension).map(Format::Mesh),
-        }
+        let other = || Format::of_paper(extension).or(Format::of_source(extension));
+        MeshFormat::from_extension(extension).map(Format::Mesh).or_else(other)
     }
 
-    /// What outputs are written as when nobody says.
+    fn of_paper(extension: &str) -> Option<Format> {
+        DrawingFormat::from_name(extension).map(Format::Drawing)
+    }
+
+    fn of_source(extension: &str) -> Option<Format> {
+        extension.eq_ignore_ascii_case("scad").then_some(Format::Scad)
+    }
+
+    /// What parts are written as when nobody says.
     pub const STL: Format = Format::Mesh(MeshFormat::Stl);
+
+    /// What views and sheets are written as when nobody says.
+    pub const SVG: Format = Format::Drawing(DrawingFormat::Svg);
 
     /// All names, for messages.
     pub fn names() -> String {
         let names: Vec<&str> = MeshFormat::ALL.iter().map(|format| format.name()).collect();
-        format!("{} or scad", names.join(", "))
+        format!("{}, scad, {}", names.join(", "), DRAWINGS)
     }
 
     /// All extensions, for messages.
     pub fn extensions() -> String {
         let mut names: Vec<&str> = MeshFormat::ALL.iter().map(|f| f.extension()).collect();
         names.dedup();
-        format!(".{} or .scad", names.join(", ."))
+        format!(".{}, .scad, .svg, .pdf or .dxf", names.join(", ."))
     }
 
     /// The extension of its files.
@@ -61,16 +76,26 @@ impl Format {
         match self {
             Format::Mesh(format) => format.extension(),
             Format::Scad => "scad",
+            Format::Drawing(format) => format.name(),
         }
+    }
+
+    /// Whether it holds lines, not solids.
+    pub fn is_drawing(self) -> bool {
+        matches!(self, Format::Drawing(_))
     }
 
     fn holds_parts(self) -> bool {
         match self {
             Format::Mesh(format) => format.holds_parts(),
             Format::Scad => true,
+            Format::Drawing(_) => false,
         }
     }
 }
+
+/// The names of the formats of drawings, for messages.
+const DRAWINGS: &str = "svg, pdf or dxf";
 
 /// A named shape and where the model says so.
 #[derive(Clone, PartialEq, Debug)]
@@ -83,15 +108,54 @@ pub struct Part {
     pub span: Span,
 }
 
+/// A named drawing or page and where the model says so.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Paper {
+    /// Its name.
+    pub name: String,
+    /// What is on it.
+    pub kind: PaperKind,
+    /// What asked for it.
+    pub span: Span,
+}
+
+/// What is on paper.
+#[derive(Clone, PartialEq, Debug)]
+pub enum PaperKind {
+    /// A view, on paper of its own size.
+    View(Arc<ViewSpec>),
+    /// A page.
+    Sheet(Arc<PageSpec>),
+}
+
+impl PaperKind {
+    /// The output it comes from.
+    pub fn product(&self) -> Product {
+        match self {
+            PaperKind::View(view) => Product::View(view.clone()),
+            PaperKind::Sheet(page) => Product::Sheet(page.clone()),
+        }
+    }
+}
+
+/// What is in a file.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Content {
+    /// Solids.
+    Solids(Vec<Part>),
+    /// A drawing or page.
+    Paper(Paper),
+}
+
 /// One file to be written.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Artifact {
     /// Path under the output folder.
     pub file: String,
-    /// What it is written as.
+    /// What it is written as; it suits the content.
     pub format: Format,
     /// What is in it.
-    pub parts: Vec<Part>,
+    pub content: Content,
 }
 
 impl Artifact {
@@ -99,21 +163,40 @@ impl Artifact {
     /// `<stem>-<part>.<extension>`.
     pub fn split(file: &str, format: Format, parts: Vec<Part>) -> Vec<Artifact> {
         if parts.len() <= 1 || format.holds_parts() {
-            return vec![Artifact { file: file.to_string(), format, parts }];
+            let content = Content::Solids(parts);
+            return vec![Artifact { file: file.to_string(), format, content }];
         }
         let (stem, extension) = file.rsplit_once('.').unwrap_or((file, format.extension()));
         let single = |part: Part| Artifact {
             file: format!("{stem}-{}.{extension}", part.name),
             format,
-            parts: vec![part],
+            content: Content::Solids(vec![part]),
         };
         parts.into_iter().map(single).collect()
     }
 
-    /// The bytes of the file. Parts that cannot be made fail with the diagnostic of the shape.
-    pub fn encode(&self, realizer: &Realizer, graph: &ShapeGraph) -> Result<Vec<u8>, Diagnostic> {
+    /// The solids in it.
+    pub fn parts(&self) -> &[Part] {
+        match &self.content {
+            Content::Solids(parts) => parts,
+            Content::Paper(_) => &[],
+        }
+    }
+
+    /// The bytes of the file. Parts that cannot be made fail with the diagnostic of the shape. Warnings about drawings
+    /// are added to `said`.
+    pub fn encode(
+        &self,
+        realizer: &Realizer,
+        drafter: &Drafter,
+        graph: &ShapeGraph,
+        said: &mut Vec<Diagnostic>,
+    ) -> Result<Vec<u8>, Diagnostic> {
+        if let (Content::Paper(paper), Format::Drawing(format)) = (&self.content, self.format) {
+            return Ok(sheet::write(format, &drawn(drafter, paper, said)?));
+        }
         let mut solids = vec![];
-        for part in &self.parts {
+        for part in self.parts() {
             let solid = realizer.solid(graph, part.shape).map_err(|e| *e.diagnostic)?;
             solids.push((&*part.name, solid.polyhedron));
         }
@@ -124,12 +207,13 @@ impl Artifact {
                 mesh::write(format, &meshes).map_err(|e| self.refused(&e.to_string()))
             }
             Format::Scad => {
-                let parts: Vec<_> = self.parts.iter().map(|p| (&*p.name, p.shape)).collect();
+                let parts: Vec<_> = self.parts().iter().map(|p| (&*p.name, p.shape)).collect();
                 let realized = Shapes { realizer, graph };
                 scad::write(graph, &parts, realizer.tolerance(), &realized)
                     .map(String::into_bytes)
                     .map_err(|e| self.refused(&e.to_string()))
             }
+            Format::Drawing(_) => Err(self.refused("a drawing format holds no solids")),
         }
     }
 
@@ -148,7 +232,32 @@ impl Artifact {
 
     /// Where the model asks for it.
     pub(super) fn span(&self) -> Option<Span> {
-        self.parts.first().map(|part| part.span)
+        match &self.content {
+            Content::Solids(parts) => parts.first().map(|part| part.span),
+            Content::Paper(paper) => Some(paper.span),
+        }
+    }
+}
+
+/// A drawing or page with its ink. All reasons but the first why a page cannot be made are added to `said`.
+fn drawn(drafter: &Drafter, paper: &Paper, said: &mut Vec<Diagnostic>) -> Result<Page, Diagnostic> {
+    match &paper.kind {
+        PaperKind::View(view) => {
+            let drawn = drafter.draw(view)?;
+            said.extend(drawn.warnings.clone());
+            Ok(drawn.figure.page(&paper.name, &Letterer))
+        }
+        PaperKind::Sheet(spec) => match page(drafter, &paper.name, spec) {
+            Ok((page, warnings)) => {
+                said.extend(warnings);
+                Ok(page)
+            }
+            Err(mut errors) => {
+                let first = errors.remove(0);
+                said.extend(errors);
+                Err(first)
+            }
+        },
     }
 }
 
@@ -184,5 +293,6 @@ mod tests {
         assert_eq!(files("both.3mf"), ["both.3mf"]);
         assert_eq!(files("sub/both.stl"), ["sub/both-a.stl", "sub/both-b.stl"]);
         assert_eq!(Format::of_file("both.step"), None);
+        assert!(Format::of_file("sub/front.SVG").is_some_and(Format::is_drawing));
     }
 }

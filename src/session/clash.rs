@@ -50,12 +50,15 @@ fn clash(second: &Artifact, first: &Artifact) -> Diagnostic {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::Format;
+    use crate::session::{Content, Format};
 
     #[test]
     fn the_first_of_one_name_is_kept() {
-        let artifact =
-            |file: &str| Artifact { file: file.to_string(), format: Format::STL, parts: vec![] };
+        let artifact = |file: &str| Artifact {
+            file: file.to_string(),
+            format: Format::STL,
+            content: Content::Solids(vec![]),
+        };
         let files = ["a.stl", "./a.stl", "A.STL", "b/a.stl", "a.stl", "/a.stl"];
         let (kept, clashes) = refuse_clashes(files.map(artifact).to_vec());
         let kept: Vec<&str> = kept.iter().map(|artifact| &*artifact.file).collect();

@@ -12,10 +12,14 @@
 //! ```
 
 mod artifact;
+mod axes;
 mod clash;
+mod cut;
 mod data;
+mod drafting;
 mod host;
 mod model;
+mod sheet;
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -23,8 +27,8 @@ use rustc_hash::FxHashMap;
 
 pub use self::data::to_json;
 pub use self::{
-    artifact::{Artifact, Format, Part},
-    model::{Measured, Model},
+    artifact::{Artifact, Content, Format, Paper, PaperKind, Part},
+    model::{Lines, Measured, Model, Sight},
 };
 use crate::{
     base::{Diagnostic, SourceMap, Watch, World},
@@ -34,7 +38,10 @@ use crate::{
 pub use crate::{
     eval::{Domain, ParamInfo, TestInfo, TestOutcome, Value},
     geom::Tolerance,
-    shape::Measures,
+    shape::{
+        Measures,
+        drawing::{Hidden, Projection, Side},
+    },
 };
 
 /// A parameter's value given from outside.

@@ -1,20 +1,26 @@
 //! An evaluated file: its outputs, exports, parameters and tests.
 
-use std::sync::Arc;
+use std::{path::Path, sync::Arc};
+
+use glam::DVec3;
 
 use super::{
     Measures, Override, Session,
-    artifact::{Artifact, Format, Part},
+    artifact::{Artifact, Content, Format, Paper, PaperKind, Part},
     clash,
+    drafting::Drafter,
 };
 use crate::{
     base::{Code, Diagnostic, Phase, watch::during},
     eval::{
-        Evaluator, ExportInfo, ExportPart, InstanceId, Limits, OutputInfo, ParamInfo, TestInfo,
-        TestOutcome, Write, nearest,
+        Evaluator, ExportInfo, ExportPart, InstanceId, Limits, OutputInfo, ParamInfo, Product,
+        TestInfo, TestOutcome, Write, nearest,
     },
     realize,
-    shape::{Geometry, Kind, ShapeId},
+    shape::{
+        Geometry, Kind, ShapeId, ViewSpec,
+        drawing::{Hidden, Method, Place, Projection, StyleSpec},
+    },
 };
 
 /// A file with its parameters set.
@@ -28,11 +34,35 @@ pub struct Model<'s> {
 /// Takes the bytes of a file; the error says in words why it could not be written.
 type Sink<'a> = &'a mut dyn FnMut(&Artifact, &[u8]) -> Result<(), String>;
 
+/// Measures of a view: lengths on paper at scale 1, coincident lines once, hidden under visible ones left out.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Lines {
+    /// Length of the visible lines, mm.
+    pub visible: f64,
+    /// Length of the hidden lines, drawn or not, mm.
+    pub hidden: f64,
+    /// Number of lines, arcs and curves, visible and hidden.
+    pub segments: usize,
+}
+
+/// How a whole model is looked at.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Sight {
+    /// Where the eye is.
+    pub projection: Projection,
+    /// The image of this point is the origin.
+    pub target: DVec3,
+    /// Which hidden lines are drawn.
+    pub hidden: Hidden,
+}
+
 /// What `measure` found.
 #[derive(Debug, Default)]
 pub struct Measured {
     /// The parts that could be made, in source order.
     pub found: Vec<(String, Arc<Measures>)>,
+    /// The views that could be drawn, in source order.
+    pub views: Vec<(String, Lines)>,
     /// What is to be said about them and about those that could not.
     pub diagnostics: Vec<Diagnostic>,
 }
@@ -90,7 +120,7 @@ impl<'s> Model<'s> {
     /// Measures the outputs of the given names, or all of them, and [checks](Model::check) the file.
     pub fn measure(&mut self, names: &[String]) -> Measured {
         let mut measured = Measured::default();
-        let parts = self.parts(names, &mut measured.diagnostics);
+        let (parts, papers) = self.products(names, &mut measured.diagnostics);
         measured.diagnostics.extend(self.check(names));
         self.realize(&parts);
         for part in parts {
@@ -101,13 +131,73 @@ impl<'s> Model<'s> {
             }
             measured.diagnostics.extend(self.warnings(part.shape));
         }
+        self.measure_views(&papers, &mut measured);
         measured.diagnostics.extend(self.session.realizer.take_remarks());
         measured
     }
 
+    fn measure_views(&self, papers: &[Paper], measured: &mut Measured) {
+        let drafter = self.drafter();
+        for paper in papers {
+            let PaperKind::View(view) = &paper.kind else { continue };
+            match drafter.draw(view) {
+                Ok(drawn) => {
+                    let drawing = &drawn.figure.drawing;
+                    // A sum of nothing is negative zero.
+                    let (visible, hidden) = (drawing.visible + 0.0, drawing.hidden + 0.0);
+                    let lines = Lines { visible, hidden, segments: drawing.segments };
+                    measured.views.push((paper.name.clone(), lines));
+                    measured.diagnostics.extend(drawn.warnings.clone());
+                }
+                Err(diagnostic) => measured.diagnostics.push(diagnostic),
+            }
+        }
+    }
+
+    fn drafter(&self) -> Drafter<'_> {
+        let session = self.session;
+        Drafter::new(&session.realizer, self.evaluator.graph(), session.watch)
+    }
+
+    /// The file of one view of all parts of the given names, or of all there are, each a body of its own. `None` where
+    /// there is no part; why is among the diagnostics.
+    pub fn sketch(
+        &mut self,
+        names: &[String],
+        sight: &Sight,
+        (file, format): (&str, Format),
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> Option<Artifact> {
+        let (parts, _) = self.products(names, diagnostics);
+        diagnostics.extend(self.check(names));
+        if parts.is_empty() && !diagnostics.iter().any(Diagnostic::is_error) {
+            diagnostics.push(Diagnostic::error(Code::Usage, "the model has no part to draw"));
+        }
+        let span = parts.first()?.span;
+        let stem = Path::new(file).file_stem().unwrap_or_default();
+        let name = stem.to_string_lossy().into_owned();
+        let view = ViewSpec {
+            shapes: parts.iter().map(|part| part.shape).collect(),
+            curves: vec![],
+            projection: sight.projection,
+            target: sight.target,
+            window: None,
+            hidden: sight.hidden,
+            method: Method::Auto,
+            style: StyleSpec::default(),
+            section: None,
+            center_lines: false,
+            dims: vec![],
+            place: Place(span),
+        };
+        let content = Content::Paper(Paper { name, kind: PaperKind::View(Arc::new(view)), span });
+        Some(Artifact { file: file.to_string(), format, content })
+    }
+
     /// The files to write. Without names: every export, and every output that none of them writes.
     /// With names: the exports that write nothing else, and the named outputs that none of these
-    /// writes. A format given here writes the outputs alone, each as `<name>.<extension>`. What
+    /// writes. A format given here writes the outputs alone, each as `<name>.<extension>`: parts where it
+    /// holds solids, views and sheets where it holds drawings, the others as they are otherwise. What
     /// [`check`](Model::check) finds is among the diagnostics.
     ///
     /// An export writes the outputs that it names, alone or as fields of its record. Where it has an
@@ -119,18 +209,28 @@ impl<'s> Model<'s> {
         format: Option<Format>,
         diagnostics: &mut Vec<Diagnostic>,
     ) -> Vec<Artifact> {
-        let mut parts = self.parts(names, diagnostics);
+        let (mut parts, mut papers) = self.products(names, diagnostics);
         let mut artifacts = vec![];
         if format.is_none() {
             let written: Vec<String>;
-            (artifacts, written) = self.exports(names, &parts, diagnostics);
+            let shapes = parts.iter().map(|p| (p.name.clone(), Product::Shape(p.shape)));
+            let drawn = papers.iter().map(|p| (p.name.clone(), p.kind.product()));
+            let outputs: Vec<(String, Product)> = shapes.chain(drawn).collect();
+            (artifacts, written) = self.exports(names, &outputs, diagnostics);
             parts.retain(|part| !written.contains(&part.name));
+            papers.retain(|paper| !written.contains(&paper.name));
         }
         diagnostics.extend(self.check(names));
-        let format = format.unwrap_or(Format::STL);
+        let of_parts = format.filter(|format| !format.is_drawing()).unwrap_or(Format::STL);
+        let of_paper = format.filter(|format| format.is_drawing()).unwrap_or(Format::SVG);
         for part in parts {
-            let file = format!("{}.{}", part.name, format.extension());
-            artifacts.push(Artifact { file, format, parts: vec![part] });
+            let file = format!("{}.{}", part.name, of_parts.extension());
+            let content = Content::Solids(vec![part]);
+            artifacts.push(Artifact { file, format: of_parts, content });
+        }
+        for paper in papers {
+            let file = format!("{}.{}", paper.name, of_paper.extension());
+            artifacts.push(Artifact { file, format: of_paper, content: Content::Paper(paper) });
         }
         let (artifacts, clashes) = clash::refuse_clashes(artifacts);
         diagnostics.extend(clashes);
@@ -141,25 +241,25 @@ impl<'s> Model<'s> {
     fn exports(
         &mut self,
         names: &[String],
-        outputs: &[Part],
+        outputs: &[(String, Product)],
         diagnostics: &mut Vec<Diagnostic>,
     ) -> (Vec<Artifact>, Vec<String>) {
         let (mut artifacts, mut written) = (vec![], vec![]);
         let Some(instance) = self.instance else { return (artifacts, written) };
         for (index, export) in self.evaluator.exports(instance).into_iter().enumerate() {
             let parts = during(self.session.watch, Phase::Eval, || {
-                self.evaluator.export_shapes(instance, index)
+                self.evaluator.export_products(instance, index)
             });
             diagnostics.extend(self.evaluator.take_diagnostics());
             let Ok(parts) = parts else { continue };
-            let found: Vec<Option<&Part>> = parts.iter().map(|p| output_of(p, outputs)).collect();
+            let found: Vec<Option<&str>> = parts.iter().map(|p| output_of(p, outputs)).collect();
             if !names.is_empty() && found.contains(&None) {
                 continue;
             }
             match self.export(&export, parts) {
                 Ok(files) if !files.is_empty() => {
                     artifacts.extend(files);
-                    written.extend(found.into_iter().flatten().map(|part| part.name.clone()));
+                    written.extend(found.into_iter().flatten().map(str::to_string));
                 }
                 Ok(_) => {}
                 Err(diagnostic) => diagnostics.push(diagnostic),
@@ -171,7 +271,7 @@ impl<'s> Model<'s> {
     fn export(
         &self,
         export: &ExportInfo,
-        parts: Vec<ExportPart>,
+        products: Vec<ExportPart>,
     ) -> Result<Vec<Artifact>, Diagnostic> {
         let Some(file) = &export.file else { return Ok(vec![]) };
         let format = Format::of_file(file).ok_or_else(|| {
@@ -180,31 +280,52 @@ impl<'s> Model<'s> {
                 .label(export.span, "")
                 .help(format!("end the name with one of {}", Format::extensions()))
         })?;
-        let part = |ExportPart { name, shape, .. }| {
-            self.solid_part(Part { name, shape, span: export.span })
-        };
-        let parts = parts.into_iter().map(part).collect::<Result<Vec<_>, _>>()?;
+        let (mut parts, mut papers) = (vec![], vec![]);
+        for ExportPart { name, product, .. } in products {
+            let span = export.span;
+            let suits = matches!(product, Product::Shape(_)) != format.is_drawing();
+            if !suits {
+                return Err(unsuited(&name, format, export));
+            }
+            match paper_kind(&product) {
+                Ok(kind) => papers.push(Paper { name, kind, span }),
+                Err(shape) => parts.push(self.solid_part(Part { name, shape, span })?),
+            }
+        }
+        if format.is_drawing() {
+            return Ok(drawings(file, format, papers));
+        }
         Ok(Artifact::split(file, format, parts))
     }
 
     /// Makes the files one after the other and hands their bytes to `write`, whose words say why a
     /// file could not be written. One failing file does not stop the others.
     pub fn build(&self, artifacts: &[Artifact], write: Sink) -> Vec<Diagnostic> {
-        let all: Vec<Part> = artifacts.iter().flat_map(|a| a.parts.clone()).collect();
+        let all: Vec<Part> = artifacts.iter().flat_map(|a| a.parts().to_vec()).collect();
         self.realize(&all);
+        let drafter = self.drafter();
         let mut diagnostics = vec![];
         for artifact in artifacts {
-            for part in &artifact.parts {
+            for part in artifact.parts() {
                 diagnostics.extend(self.warnings(part.shape));
             }
             let outcome = during(self.session.watch, Phase::Write, || {
-                let bytes = artifact.encode(&self.session.realizer, self.evaluator.graph())?;
+                let bytes = self.encode(artifact, &drafter, &mut diagnostics)?;
                 write(artifact, &bytes).map_err(|words| artifact.unwritable(words))
             });
             diagnostics.extend(outcome.err());
         }
         diagnostics.extend(self.session.realizer.take_remarks());
         diagnostics
+    }
+
+    fn encode(
+        &self,
+        artifact: &Artifact,
+        drafter: &Drafter,
+        said: &mut Vec<Diagnostic>,
+    ) -> Result<Vec<u8>, Diagnostic> {
+        artifact.encode(&self.session.realizer, drafter, self.evaluator.graph(), said)
     }
 
     /// The tests in source order.
@@ -229,31 +350,43 @@ impl<'s> Model<'s> {
         let format = Format::of_file(&path).unwrap_or(Format::STL);
         let part =
             Part { name: "golden".into(), shape, span: self.evaluator.graph().origin(shape) };
-        let artifact = Artifact { file: path.clone(), format, parts: vec![part] };
-        let bytes = artifact.encode(&self.session.realizer, self.evaluator.graph())?;
+        let content = Content::Solids(vec![part]);
+        let artifact = Artifact { file: path.clone(), format, content };
+        let bytes = self.encode(&artifact, &self.drafter(), &mut vec![])?;
         Ok((path, bytes))
     }
 
-    /// Evaluates the outputs of the given names, or all of them, to solids.
-    fn parts(&mut self, names: &[String], diagnostics: &mut Vec<Diagnostic>) -> Vec<Part> {
-        let Some(instance) = self.instance else { return vec![] };
-        let mut parts = vec![];
+    /// Evaluates the outputs of the given names, or all of them, to solids and to what is put on paper.
+    fn products(
+        &mut self,
+        names: &[String],
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> (Vec<Part>, Vec<Paper>) {
+        let (mut parts, mut papers) = (vec![], vec![]);
+        let Some(instance) = self.instance else { return (parts, papers) };
         for output in self.evaluator.outputs(instance) {
             if !names.is_empty() && !names.iter().any(|name| **name == *output.name) {
                 continue;
             }
-            let shape = during(self.session.watch, Phase::Eval, || {
-                self.evaluator.shape_of(instance, &output.name)
+            let product = during(self.session.watch, Phase::Eval, || {
+                self.evaluator.product_of(instance, &output.name)
             });
             diagnostics.extend(self.evaluator.take_diagnostics());
-            let Ok(shape) = shape else { continue };
-            let name = output.name.to_string();
-            match self.solid_part(Part { name, shape, span: output.span }) {
+            let Ok(product) = product else { continue };
+            let (name, span) = (output.name.to_string(), output.span);
+            let shape = match paper_kind(&product) {
+                Ok(kind) => {
+                    papers.push(Paper { name, kind, span });
+                    continue;
+                }
+                Err(shape) => shape,
+            };
+            match self.solid_part(Part { name, shape, span }) {
                 Ok(part) => parts.push(part),
                 Err(diagnostic) => diagnostics.push(diagnostic),
             }
         }
-        parts
+        (parts, papers)
     }
 
     /// Refuses plane figures.
@@ -279,12 +412,47 @@ impl<'s> Model<'s> {
     }
 }
 
-/// The output that an export writes with one of its parts: the one it names, else the only one of that shape.
-fn output_of<'a>(part: &ExportPart, outputs: &'a [Part]) -> Option<&'a Part> {
-    if let Some(name) = &part.output {
-        return outputs.iter().find(|output| *output.name == **name);
+/// What of a product is put on paper; else its shape.
+fn paper_kind(product: &Product) -> Result<PaperKind, ShapeId> {
+    match product {
+        Product::Shape(shape) => Err(*shape),
+        Product::View(view) => Ok(PaperKind::View(view.clone())),
+        Product::Sheet(page) => Ok(PaperKind::Sheet(page.clone())),
     }
-    let mut same = outputs.iter().filter(|output| output.shape == part.shape);
+}
+
+/// The error for an export whose format does not hold what it is given.
+fn unsuited(name: &str, format: Format, export: &ExportInfo) -> Diagnostic {
+    let (kind, help) = match format.is_drawing() {
+        true => {
+            ("solid", format!("draw it: `export \"x.{}\" = {name}.view()`", format.extension()))
+        }
+        false => ("drawing", "drawings are written as .svg, .pdf or .dxf".to_string()),
+    };
+    let words = format!("a {kind} cannot be written as .{}", format.extension());
+    Diagnostic::error(Code::UnwritableFile, words).label(export.span, "").help(help)
+}
+
+/// The files of some drawings: one each, by the part's name where there are several.
+fn drawings(file: &str, format: Format, papers: Vec<Paper>) -> Vec<Artifact> {
+    let several = papers.len() > 1;
+    let (stem, extension) = file.rsplit_once('.').unwrap_or((file, format.extension()));
+    let artifact = |paper: Paper| {
+        let file = match several {
+            true => format!("{stem}-{}.{extension}", paper.name),
+            false => file.to_string(),
+        };
+        Artifact { file, format, content: Content::Paper(paper) }
+    };
+    papers.into_iter().map(artifact).collect()
+}
+
+/// The output that an export writes with one of its parts: the one it names, else the only one that is the same.
+fn output_of<'a>(part: &ExportPart, outputs: &'a [(String, Product)]) -> Option<&'a str> {
+    if let Some(name) = &part.output {
+        return outputs.iter().map(|(known, _)| &**known).find(|known| *known == &**name);
+    }
+    let mut same = outputs.iter().filter(|(_, product)| *product == part.product);
     let first = same.next();
-    first.filter(|_| same.next().is_none())
+    first.filter(|_| same.next().is_none()).map(|(name, _)| &**name)
 }

@@ -3,12 +3,14 @@
 //! Pure data. Nodes are immutable and hash-consed: equal construction gives the same
 //! [`ShapeId`], so that equality is an integer comparison and results can be kept by node.
 
+pub mod drawing;
 mod fingerprint;
 pub mod geometry;
 pub mod graph;
 pub mod node;
 mod stretched;
 
+pub use drawing::{CurveSpec, PageSpec, ViewSpec};
 pub use geometry::{Geometry, GeometryError, Measures};
 pub use graph::ShapeGraph;
 pub use node::{Kind, Node, ShapeId};

@@ -54,7 +54,9 @@ fn reads_back(name: &str) -> Vec<String> {
             let fault = fault(format, file, bytes, measures);
             faults.extend(fault.map(|words| format!("{name}, {}: {words}", format.name())));
         }
-        if made.files.len() != made.parts.len() {
+        let ending = format!(".{}", format.extension());
+        if made.files.iter().filter(|(file, _)| file.ends_with(&ending)).count() != made.parts.len()
+        {
             faults.push(format!("{name}, {}: {} files", format.name(), made.files.len()));
         }
     }

@@ -17,5 +17,6 @@ mod readers;
 mod readme;
 mod regressions;
 mod scad;
+mod sheets;
 mod sources;
 mod stretch;

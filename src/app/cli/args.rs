@@ -38,6 +38,8 @@ pub enum Command {
     Measure(Measure),
     /// List the parameters of a model
     Params(Params),
+    /// Draw all parts of a model or mesh as one view
+    View(View),
     /// Start a project in a new folder
     New(New),
 }
@@ -83,7 +85,7 @@ pub struct Build {
     pub output: PathBuf,
     /// Write each part as NAME.FORMAT in place of the exports
     #[arg(long, value_name = "FORMAT")]
-    #[arg(help = "Write parts as stl, stl-ascii, obj, off, ply, 3mf, glb or scad, no exports")]
+    #[arg(help = "Parts as stl, stl-ascii, obj, off, ply, 3mf, glb, scad; views as svg, pdf, dxf")]
     pub format: Option<String>,
     /// How.
     #[command(flatten)]
@@ -127,6 +129,35 @@ pub struct Measure {
     /// Print JSON
     #[arg(long)]
     pub json: bool,
+    /// How.
+    #[command(flatten)]
+    pub making: Making,
+}
+
+/// `katachi view`.
+#[derive(Debug, Args)]
+pub struct View {
+    /// Which model; here it may be a mesh.
+    #[command(flatten)]
+    pub model: Model,
+    /// Only this part (may be repeated)
+    #[arg(short, long = "part", value_name = "NAME")]
+    pub part: Vec<String>,
+    /// A side such as TOP, or X,Y,Z towards the eye
+    #[arg(long, value_name = "SIDE", default_value = "ISO", allow_hyphen_values = true)]
+    pub from: String,
+    /// Perspective from here in place of --from
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub eye: Option<String>,
+    /// What the eye looks at [default: 0,0,0]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub target: Option<String>,
+    /// Hidden lines: off, dashed or depth:K
+    #[arg(long, value_name = "HOW", default_value = "off")]
+    pub hidden: String,
+    /// The .svg, .pdf or .dxf [default: out/MODEL.svg]
+    #[arg(short, value_name = "FILE")]
+    pub output: Option<PathBuf>,
     /// How.
     #[command(flatten)]
     pub making: Making,

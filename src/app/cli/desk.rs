@@ -60,6 +60,16 @@ impl Desk {
         })
     }
 
+    /// The same desk; an entry that is a mesh becomes a model that imports it.
+    pub fn importing(mut self) -> Desk {
+        let extension = self.entry.rsplit_once('.').map_or("", |(_, extension)| extension);
+        let meshes = ["stl", "obj", "off", "ply", "3mf"];
+        if meshes.iter().any(|mesh| extension.eq_ignore_ascii_case(mesh)) {
+            self.entry = self.disk.import(&self.entry);
+        }
+        self
+    }
+
     /// A session over these files. It is never dropped: the process ends with its command, and taking
     /// trees and solids apart piece by piece before that would take longer than reading them.
     pub fn session(&self) -> ManuallyDrop<Session<'_>> {
@@ -105,7 +115,7 @@ fn once_each(diagnostics: &[Diagnostic]) -> Vec<Diagnostic> {
 }
 
 /// Writes a file that the user named by its path.
-fn write_beside(path: &Path, bytes: &[u8]) -> Result<(), String> {
+pub(super) fn write_beside(path: &Path, bytes: &[u8]) -> Result<(), String> {
     let name = path.file_name().ok_or_else(|| format!("`{}` names no file", path.display()))?;
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     write_whole(folder, &name.to_string_lossy(), bytes).map(drop)

@@ -5,7 +5,10 @@ use std::io::{self, Write};
 use serde_json::{Map, Value, json};
 
 use super::{Exit, args::Measure, desk::Desk, fail};
-use crate::{app::render::Style, session::Measures};
+use crate::{
+    app::render::Style,
+    session::{Lines, Measures},
+};
 
 /// Prints the measures of every part that can be made, and reports.
 pub fn run(arguments: &Measure, style: Style) -> io::Result<Exit> {
@@ -27,10 +30,15 @@ pub fn run(arguments: &Measure, style: Style) -> io::Result<Exit> {
     if arguments.json {
         let parts = measured.found.iter().map(|(name, m)| (name.clone(), object(m)));
         let parts: Map<String, Value> = parts.collect();
-        writeln!(out, "{:#}", json!({ "parts": parts, "views": {} }))?;
+        let views = measured.views.iter().map(|(name, lines)| (name.clone(), lines_object(lines)));
+        let views: Map<String, Value> = views.collect();
+        writeln!(out, "{:#}", json!({ "parts": parts, "views": views }))?;
     } else {
         for (name, measures) in &measured.found {
             write!(out, "{}", table(name, measures))?;
+        }
+        for (name, lines) in &measured.views {
+            write!(out, "{}", lines_table(name, lines))?;
         }
     }
     desk.report(&session, &diagnostics)
@@ -49,6 +57,20 @@ fn object(m: &Measures) -> Value {
         "shells": m.shells,
         "closed": m.closed,
     })
+}
+
+/// Measures of a view as the language's command line describes them.
+fn lines_object(lines: &Lines) -> Value {
+    json!({ "visible": lines.visible, "hidden": lines.hidden, "segments": lines.segments })
+}
+
+/// Measures of a view for people.
+fn lines_table(name: &str, lines: &Lines) -> String {
+    let (visible, hidden) = (short(lines.visible), short(lines.hidden));
+    let segments = lines.segments;
+    format!(
+        "{name}\n  visible    {visible} mm\n  hidden     {hidden} mm\n  segments   {segments}\n"
+    )
 }
 
 /// Measures for people.

@@ -9,6 +9,7 @@ mod measure;
 mod new;
 mod params;
 mod test;
+mod view;
 
 use std::{
     ffi::OsString,
@@ -71,6 +72,7 @@ fn dispatch(cli: &Cli) -> io::Result<Exit> {
         Command::Test(arguments) => test::run(arguments, style),
         Command::Measure(arguments) => measure::run(arguments, style),
         Command::Params(arguments) => params::run(arguments, style),
+        Command::View(arguments) => view::run(arguments, style),
         Command::New(arguments) => new::run(arguments, style),
     }
 }

@@ -4,16 +4,19 @@
 
 mod colors;
 mod constants;
+mod curves;
 mod files;
 mod lists;
 mod mathematics;
 mod measures;
+mod pages;
 mod placing;
 mod profiles;
 mod random;
 mod references;
 mod solids;
 mod strings;
+mod views;
 
 pub use files::data_value;
 
@@ -41,16 +44,19 @@ pub type Native = fn(&mut Evaluator, &Args) -> Outcome<Value>;
 pub fn find(name: &str) -> Option<Native> {
     let tables = [
         constants::TABLE,
+        curves::TABLE,
         lists::TABLE,
         files::TABLE,
         mathematics::TABLE,
         measures::TABLE,
+        pages::TABLE,
         placing::TABLE,
         profiles::TABLE,
         random::TABLE,
         references::TABLE,
         solids::TABLE,
         strings::TABLE,
+        views::TABLE,
     ];
     let mut entries = tables.into_iter().flatten();
     entries.find(|(known, _)| *known == name).map(|(_, native)| *native)

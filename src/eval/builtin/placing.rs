@@ -159,20 +159,21 @@ fn tag(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
 }
 
 fn color(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
-    let (child, color) = (args.shape(0)?, read_color(args)?);
+    let (child, color) = (args.shape(0)?, read_color(args, 1, args.value(1))?);
     let id = evaluator.add_node(Node::Paint { color, child }, args.call);
     Ok(evaluator.shape_value(id))
 }
 
-fn read_color(args: &Args) -> Outcome<Color> {
-    match args.value(1) {
+/// The colour that a value names, which stands in argument `i`.
+pub(super) fn read_color(args: &Args, i: usize, value: &Value) -> Outcome<Color> {
+    match value {
         Value::Text(name) => match colors::named(name) {
             Some(color) => Ok(color),
             None => {
                 let message = format!("there is no colour \"{}\"", &***name);
                 let near = did_you_mean(name, colors::NAMES.iter().map(|(name, _)| *name));
                 let error = crate::base::Diagnostic::error(Code::UnknownName, message);
-                let error = error.label(args.span(1), "");
+                let error = error.label(args.span(i), "");
                 Err(match near {
                     Some((help, _)) => error.help(help),
                     None => error.help("write a CSS name, \"#rrggbb\", or [r, g, b] from 0 to 1"),
@@ -185,7 +186,7 @@ fn read_color(args: &Args) -> Outcome<Color> {
                 Ok(colors::from_unit(rgb.to_array()))
             }
             _ => {
-                args.fail(1, Code::OutOfRange, "a colour is a name or [r, g, b], each from 0 to 1")
+                args.fail(i, Code::OutOfRange, "a colour is a name or [r, g, b], each from 0 to 1")
             }
         },
     }

@@ -37,6 +37,9 @@ pub fn equal(a: &Value, b: &Value, steps: &mut u64) -> Result<bool, Incomparable
         (Value::Bool(a), Value::Bool(b)) => Ok(a == b),
         (Value::Text(a), Value::Text(b)) => Ok(a == b),
         (Value::Solid(a), Value::Solid(b)) | (Value::Profile(a), Value::Profile(b)) => Ok(a == b),
+        (Value::Curve(a), Value::Curve(b)) => Ok(a == b),
+        (Value::Drawing(a), Value::Drawing(b)) => Ok(a == b),
+        (Value::Page(a), Value::Page(b)) => Ok(a == b),
         (Value::Module(a), Value::Module(b)) => Ok(a == b),
         (Value::Function(a), Value::Function(b)) => Ok(Arc::ptr_eq(a, b)),
         (Value::Record(a), Value::Record(b)) => {

@@ -124,7 +124,7 @@ impl Evaluator<'_> {
         }
     }
 
-    /// A part must be a solid; a list is its union.
+    /// A part must be a solid, a list is its union; a view must be a drawing, a sheet a page.
     fn output_value(
         &mut self,
         kind: OutputKind,
@@ -141,9 +141,19 @@ impl Evaluator<'_> {
         if kind == OutputKind::Part && Type::Solid.check(&self.graph, &value).is_ok() {
             return Ok(Type::Solid.convert(&mut self.graph, value));
         }
+        match (kind, &value) {
+            (OutputKind::View, Value::Drawing(_)) | (OutputKind::Sheet, Value::Page(_)) => {
+                return Ok(value);
+            }
+            _ => {}
+        }
         let words = format!("the {word} `{name}` needs {needed}, got {}", shown(&value));
         let error = Diagnostic::error(base::Code::WrongKind, words).label(at, "");
         match (kind, &value) {
+            (OutputKind::View, Value::Page(_)) => Err(error.help("a page is a `sheet`").into()),
+            (OutputKind::Sheet, Value::Drawing(_)) => Err(error
+                .help("put it on a page: `page(A4).place(drawing, at = [105, 148])`")
+                .into()),
             (OutputKind::Part, Value::Profile(_)) => {
                 Err(error.help("make a solid of it with `.extrude(h)`").into())
             }
@@ -501,6 +511,9 @@ pub fn type_of(default: &Value) -> Type {
         Value::Function(_) => Type::Function,
         Value::Solid(_) => Type::Solid,
         Value::Profile(_) => Type::Profile,
+        Value::Curve(_) => Type::Curve,
+        Value::Drawing(_) => Type::Drawing,
+        Value::Page(_) => Type::Page,
         Value::Symbol(_) | Value::Module(_) => Type::Any,
     }
 }

@@ -16,7 +16,7 @@ pub use store::{List, Record, Text};
 pub use symbol::Symbol;
 
 use super::{dimension::Dimension, instance::InstanceId};
-use crate::shape::ShapeId;
+use crate::shape::{CurveSpec, PageSpec, ShapeId, ViewSpec};
 
 /// A value of the language, 16 bytes.
 #[derive(Clone, Debug)]
@@ -41,6 +41,12 @@ pub enum Value {
     Solid(ShapeId),
     /// A plane figure.
     Profile(ShapeId),
+    /// A curve in space.
+    Curve(Arc<CurveSpec>),
+    /// A view of shapes.
+    Drawing(Arc<ViewSpec>),
+    /// A page with views on it.
+    Page(Arc<PageSpec>),
     /// A file with its parameters set.
     Module(InstanceId),
 }
@@ -89,6 +95,9 @@ impl Value {
             Value::Function(_) => "a function".into(),
             Value::Solid(_) => "a solid".into(),
             Value::Profile(_) => "a profile".into(),
+            Value::Curve(_) => "a curve".into(),
+            Value::Drawing(_) => "a drawing".into(),
+            Value::Page(_) => "a page".into(),
             Value::Module(_) => "a module".into(),
         }
     }

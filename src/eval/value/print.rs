@@ -86,6 +86,9 @@ impl Printer<'_, '_> {
             },
             Value::Solid(_) => self.f.write_str("<solid>"),
             Value::Profile(_) => self.f.write_str("<profile>"),
+            Value::Curve(_) => self.f.write_str("<curve>"),
+            Value::Drawing(_) => self.f.write_str("<drawing>"),
+            Value::Page(_) => self.f.write_str("<page>"),
             Value::Module(_) => self.f.write_str("<module>"),
         }
     }

@@ -47,6 +47,34 @@ symbols! {
     Sphere = "SPHERE",
     /// The exact kernel.
     Exact = "EXACT",
+    /// Isometric: from (1, -1, 1).
+    Iso = "ISO",
+    /// From (1, -sqrt 7, 1).
+    Dimetric = "DIMETRIC",
+    /// No hidden lines.
+    Off = "OFF",
+    /// Hidden lines dashed.
+    Dashed = "DASHED",
+    /// The view from above stands below.
+    FirstAngle = "FIRST_ANGLE",
+    /// The view from above stands above.
+    ThirdAngle = "THIRD_ANGLE",
+    /// Whatever suits.
+    Auto = "AUTO",
+    /// Hidden lines by counting faces.
+    Count = "COUNT",
+    /// Hidden lines by clipping.
+    Clip = "CLIP",
+    /// The paper size A0.
+    A0 = "A0",
+    /// The paper size A1.
+    A1 = "A1",
+    /// The paper size A2.
+    A2 = "A2",
+    /// The paper size A3.
+    A3 = "A3",
+    /// The paper size A4.
+    A4 = "A4",
 }
 
 impl fmt::Display for Symbol {

@@ -197,10 +197,10 @@ pub fn run_limited(files: &[(&str, &str)], overrides: &[(&str, &str)], limits: L
 
 fn evaluate_all(evaluator: &mut Evaluator, instance: InstanceId) -> Vec<Diagnostic> {
     for output in evaluator.outputs(instance) {
-        let _ = evaluator.shape_of(instance, &output.name);
+        let _ = evaluator.product_of(instance, &output.name);
     }
     for i in 0..evaluator.exports(instance).len() {
-        let _ = evaluator.export_shapes(instance, i);
+        let _ = evaluator.export_products(instance, i);
     }
     evaluator.check(instance, &[]);
     let mut diagnostics = vec![];

@@ -91,7 +91,10 @@ fn unknown_names() {
     refuses("a = box(1, 1, 1).translate([1, 2, 3])", &["here this is `move`"]);
     refuses("width = 3\na = widht + 1", &["did you mean `width`?"]);
     refuses("a = box(1, 2, 3).filet(2)", &["unknown name `filet` @filet@"]);
-    refuses("view v = box(1, 2, 3).view(from = 1)", &["unknown name `view`"]);
+    refuses(
+        "view v = box(1, 2, 3).view(from = 1)",
+        &["a view is from a side or a direction", "@1@"],
+    );
     refuses("a = metaball([1])", &["unknown name `metaball`"]);
     refuses("a = builtin(\"math.sin\")", &["unknown name `builtin`"]);
     refuses("fn f(x: Lenght) = x", &["there is no type `Lenght`", "did you mean `Length`?"]);

@@ -14,10 +14,10 @@ fn part(source: &str, look: impl FnOnce(&ShapeGraph, ShapeId)) {
     let bench = Bench::new(&files);
     let mut evaluator = Evaluator::new(&bench, Limits::default());
     let instance = evaluator.open("main.kata", &[]).expect("it opens");
-    let shape = evaluator.shape_of(instance, "p");
+    let shape = evaluator.product_of(instance, "p");
     let words = evaluator.take_diagnostics();
     assert!(words.is_empty(), "{source}: {words:?}");
-    look(evaluator.graph(), shape.expect("it evaluates"));
+    look(evaluator.graph(), shape.expect("it evaluates").shape().expect("a shape"));
 }
 
 fn children(source: &str) -> (&'static str, usize) {
@@ -148,19 +148,20 @@ fn what_a_file_offers() {
     assert!(params[0].active && !params[2].active);
     let outputs: Vec<String> = evaluator.outputs(id).iter().map(|o| o.name.to_string()).collect();
     assert_eq!(outputs, ["main", "clip"]);
-    let main = evaluator.shape_of(id, "main").expect("the anonymous part");
+    let main = evaluator.product_of(id, "main").expect("the anonymous part");
+    let main = main.shape().expect("a shape");
     assert!(matches!(evaluator.graph().node(main), Node::Union(list) if list.len() == 2));
     let exports = evaluator.exports(id);
     assert_eq!(exports[0].file.as_deref(), Some("lip.3mf"));
-    let parts = evaluator.export_shapes(id, 0).expect("parts");
+    let parts = evaluator.export_products(id, 0).expect("parts");
     let names: Vec<&str> = parts.iter().map(|part| &*part.name).collect();
     assert_eq!(names, ["clip", "other"]);
     assert_eq!((parts[0].output.as_deref(), &parts[1].output), (Some("clip"), &None));
-    let part = &evaluator.export_shapes(id, 1).expect("one part")[0];
+    let part = &evaluator.export_products(id, 1).expect("one part")[0];
     assert_eq!((&*part.name, &part.output), ("list", &None));
     assert_eq!(evaluator.tolerance(id), Some(0.02));
     assert!(evaluator.take_diagnostics().is_empty());
-    assert!(evaluator.shape_of(id, "clop").is_err());
+    assert!(evaluator.product_of(id, "clop").is_err());
     assert_eq!(evaluator.take_diagnostics()[0].code, Code::UnknownName);
 }
 
@@ -214,7 +215,8 @@ fn check_asks_no_geometry_and_leaves_what_it_skips() {
     let told = evaluator.take_diagnostics();
     assert_eq!(told.len(), 1, "{told:?}");
     assert_eq!(told[0].code, Code::Arithmetic);
-    let shape = evaluator.shape_of(id, "p").expect("it is evaluated after the check");
+    let shape = evaluator.product_of(id, "p").expect("it is evaluated after the check");
+    let shape = shape.shape().expect("a shape");
     assert!(matches!(evaluator.graph().node(shape), Node::Box { max, .. } if max.x == 3.5));
 }
 
@@ -228,6 +230,6 @@ fn asserts_that_check_skips_are_made_up_for() {
     let id = evaluator.open("main.kata", &[]).expect("it opens");
     evaluator.check(id, &[]);
     assert!(evaluator.take_diagnostics().is_empty());
-    assert!(evaluator.shape_of(id, "p").is_err());
+    assert!(evaluator.product_of(id, "p").is_err());
     assert_eq!(evaluator.take_diagnostics()[0].message, "too small");
 }

@@ -1,0 +1,450 @@
+//! Views: what is drawn, from where, and what is written on it.
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+
+use super::{Args, Native, coordinates, flat, placing::read_color};
+use crate::{
+    base::{Code, Diagnostic},
+    eval::{
+        dimension::Dimension,
+        evaluator::Evaluator,
+        failure::{Outcome, fail},
+        nearest::did_you_mean,
+        types::shown,
+        value::{Record, Symbol, Value},
+    },
+    shape::{
+        CurveSpec, Kind, ShapeId, ViewSpec,
+        drawing::{
+            CutPlane, DimSpec, Hidden, Measured, Method, PenName, PenSpec, Place, Projection, Side,
+            StyleSpec,
+        },
+    },
+};
+
+pub const TABLE: &[(&str, Native)] = &[
+    ("view.of", view),
+    ("view.section", section_of_shapes),
+    ("view.cut", section_of_view),
+    ("view.center_lines", center_lines),
+    ("view.dim.linear", dim_linear),
+    ("view.dim.chain", dim_chain),
+    ("view.dim.radius", |e, a| dim_round(e, a, false)),
+    ("view.dim.diameter", |e, a| dim_round(e, a, true)),
+    ("view.dim.angle", dim_angle),
+];
+
+/// `shapes, from, eye, target, fov, window, hidden, style, method`.
+fn view(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
+    let (shapes, curves) = subjects(evaluator, args)?;
+    let target = args.point(3)?;
+    let spec = ViewSpec {
+        shapes,
+        curves,
+        projection: projection(args, target)?,
+        target,
+        window: window(args)?,
+        hidden: hidden(args, 6)?,
+        method: method(args)?,
+        style: style(args, 7)?,
+        section: None,
+        center_lines: false,
+        dims: vec![],
+        place: Place(evaluator.shown_at(args.call)),
+    };
+    Ok(Value::Drawing(Arc::new(spec)))
+}
+
+/// The solids and curves of the first argument, lists opened at every level.
+fn subjects(
+    evaluator: &mut Evaluator,
+    args: &Args,
+) -> Outcome<(Vec<ShapeId>, Vec<Arc<CurveSpec>>)> {
+    let (mut shapes, mut curves) = (vec![], vec![]);
+    let mut pending = vec![args.value(0).clone()];
+    while let Some(value) = pending.pop() {
+        evaluator.tick(1, args.call)?;
+        match value {
+            Value::Solid(id) => shapes.push(id),
+            Value::Curve(curve) => curves.push(curve),
+            Value::List(list) => pending.extend(list.iter().rev().cloned()),
+            other => {
+                let words = format!("a view needs solids and curves, got {}", shown(&other));
+                let error = Diagnostic::error(Code::WrongKind, words).label(args.span(0), "");
+                let flat =
+                    other.shape().is_some_and(|s| evaluator.graph().kind(s) == Kind::Profile);
+                let help = "make a solid of it with `.extrude(h)`";
+                return Err(if flat { error.help(help) } else { error }.into());
+            }
+        }
+    }
+    Ok((shapes, curves))
+}
+
+fn side(symbol: Symbol) -> Option<Side> {
+    Some(match symbol {
+        Symbol::Front => Side::Front,
+        Symbol::Back => Side::Back,
+        Symbol::Left => Side::Left,
+        Symbol::Right => Side::Right,
+        Symbol::Top => Side::Top,
+        Symbol::Bottom => Side::Bottom,
+        Symbol::Iso => Side::Iso,
+        Symbol::Dimetric => Side::Dimetric,
+        _ => return None,
+    })
+}
+
+fn projection(args: &Args, target: DVec3) -> Outcome<Projection> {
+    if args.given(2) {
+        return perspective(args, target);
+    }
+    if args.given(4) {
+        let words = "`fov` needs an `eye`: a parallel projection has no field of view";
+        return args.fail(4, Code::BadCall, words);
+    }
+    if !args.given(1) {
+        return Ok(Projection::Side(Side::Iso));
+    }
+    match (args.value(1), coordinates(args.value(1))) {
+        (_, Some(DVec3::ZERO)) => args.degenerate(1, "must not be the zero vector"),
+        (_, Some(direction)) => Ok(Projection::Direction(direction)),
+        (Value::Symbol(symbol), _) if side(*symbol).is_some() => {
+            Ok(Projection::Side(side(*symbol).unwrap_or(Side::Iso)))
+        }
+        (other, _) => {
+            let words = format!("a view is from a side or a direction, got {}", shown(other));
+            let sides = "the sides are FRONT, BACK, LEFT, RIGHT, TOP, BOTTOM, ISO and DIMETRIC; \
+                         a direction is [x, y, z] towards the eye";
+            let error = Diagnostic::error(Code::WrongKind, words).label(args.span(1), "");
+            Err(error.help(sides).into())
+        }
+    }
+}
+
+fn perspective(args: &Args, target: DVec3) -> Outcome<Projection> {
+    if args.given(1) {
+        return args.fail(1, Code::BadCall, "`from` is parallel and `eye` perspective; give one");
+    }
+    let eye = args.point(2)?;
+    if eye == target {
+        let words = format!("the eye is at the target, {}", args.value(2));
+        let error = Diagnostic::error(Code::Degenerate, words).label(args.span(2), "");
+        return Err(error.help("the view is from `eye` towards `target`; move one of them").into());
+    }
+    let fov = if args.given(4) { Some(args.number(4)?) } else { None };
+    if let Some(fov) = fov.filter(|fov| !(*fov > 0.0 && *fov < 180.0)) {
+        let words =
+            format!("the field of view is {fov}deg; it must be above 0deg and below 180deg");
+        return args.fail(4, Code::OutOfRange, words);
+    }
+    if fov.is_some() && args.given(5) {
+        return args.fail(5, Code::BadCall, "`fov` and `window` both bound the picture; give one");
+    }
+    Ok(Projection::Perspective { eye, fov })
+}
+
+/// `[width, height]` about the target, or two corners.
+fn window(args: &Args) -> Outcome<Option<[DVec2; 2]>> {
+    if !args.given(5) {
+        return Ok(None);
+    }
+    let corners = match (args.value(5), coordinates(args.value(5))) {
+        (Value::List(list), Some(size)) if list.len() == 2 => {
+            Some([-flat(size) / 2.0, flat(size) / 2.0])
+        }
+        (Value::List(list), _) if list.len() == 2 => {
+            let corners = [coordinates(&list[0]), coordinates(&list[1])];
+            corners[0].zip(corners[1]).map(|(a, b)| [flat(a.min(b)), flat(a.max(b))])
+        }
+        _ => None,
+    };
+    let Some([min, max]) = corners else {
+        let words = format!(
+            "a window is [width, height] or two corners [[x, y], [x, y]], got {}",
+            shown(args.value(5))
+        );
+        return args.fail(5, Code::WrongKind, words);
+    };
+    if (max - min).min_element() > 0.0 {
+        return Ok(Some([min, max]));
+    }
+    args.degenerate(5, "needs a width and a height above 0")
+}
+
+fn hidden(args: &Args, i: usize) -> Outcome<Hidden> {
+    match args.value(i) {
+        Value::Symbol(Symbol::Off) => return Ok(Hidden::Off),
+        Value::Symbol(Symbol::Dashed) => return Ok(Hidden::Dashed),
+        Value::Record(record) => {
+            if let Some(Value::Number(k, Dimension::BARE)) = record.get("depth") {
+                return Ok(Hidden::Depth(*k as u32));
+            }
+        }
+        _ => {}
+    }
+    let words = format!("`hidden` is OFF, DASHED or depth(k), got {}", shown(args.value(i)));
+    args.fail(i, Code::WrongKind, words)
+}
+
+fn method(args: &Args) -> Outcome<Method> {
+    match args.value(8) {
+        Value::Symbol(Symbol::Auto) => Ok(Method::Auto),
+        Value::Symbol(Symbol::Count) => Ok(Method::Count),
+        Value::Symbol(Symbol::Clip) => Ok(Method::Clip),
+        other => {
+            let words = format!("`method` is AUTO, COUNT or CLIP, got {}", shown(other));
+            args.fail(8, Code::WrongKind, words)
+        }
+    }
+}
+
+/// What a style may set beside its pens.
+const SETTINGS: [&str; 3] = ["crease", "hatch_pitch", "text_height"];
+
+fn style(args: &Args, i: usize) -> Outcome<StyleSpec> {
+    let mut style = StyleSpec::default();
+    let Value::Record(record) = args.value(i) else { return Ok(style) };
+    for (key, value) in record.fields() {
+        if let Some((pen, _)) = PenName::ALL.iter().find(|(_, name)| **name == **key) {
+            let Value::Record(fields) = value else {
+                let words = format!(
+                    "the style `{key}` is a record such as {{ width = 0.5mm }}, got {}",
+                    shown(value)
+                );
+                return args.fail(i, Code::WrongKind, words);
+            };
+            style.pens.push((*pen, read_pen(args, i, key, fields)?));
+            continue;
+        }
+        match &**key {
+            "crease" => style.crease = Some(positive(args, i, key, value, Dimension::ANGLE)?),
+            "hatch_pitch" => {
+                style.hatch_pitch = Some(positive(args, i, key, value, Dimension::LENGTH)?);
+            }
+            "text_height" => {
+                style.text_height = Some(positive(args, i, key, value, Dimension::LENGTH)?);
+            }
+            _ => {
+                let names = PenName::ALL.iter().map(|(_, name)| *name).chain(SETTINGS);
+                return unknown_key(args, i, "a style", key, names);
+            }
+        }
+    }
+    Ok(style)
+}
+
+fn read_pen(args: &Args, i: usize, name: &str, fields: &Record) -> Outcome<PenSpec> {
+    let mut pen = PenSpec::default();
+    for (key, value) in fields.fields() {
+        match &**key {
+            "width" => pen.width = Some(positive(args, i, key, value, Dimension::LENGTH)?),
+            "color" => pen.color = Some(read_color(args, i, value)?),
+            "dash" => {
+                let Value::List(list) = value else {
+                    let words = format!("`dash` is a list of lengths, got {}", shown(value));
+                    return args.fail(i, Code::WrongKind, words);
+                };
+                let lengths =
+                    list.iter().map(|value| positive(args, i, key, value, Dimension::LENGTH));
+                pen.dash = Some(lengths.collect::<Outcome<_>>()?);
+            }
+            _ => {
+                let what = format!("the pen `{name}`");
+                return unknown_key(args, i, &what, key, ["width", "dash", "color"].into_iter());
+            }
+        }
+    }
+    Ok(pen)
+}
+
+fn unknown_key<'a, T>(
+    args: &Args,
+    i: usize,
+    what: &str,
+    key: &str,
+    names: impl Iterator<Item = &'a str> + Clone,
+) -> Outcome<T> {
+    let words = format!("{what} has no `{key}`");
+    let error = Diagnostic::error(Code::UnknownArgument, words).label(args.span(i), "");
+    let all = || format!("it has {}", names.clone().collect::<Vec<_>>().join(", "));
+    Err(match did_you_mean(key, names.clone()) {
+        Some((help, _)) => error.help(help),
+        None => error.help(all()),
+    }
+    .into())
+}
+
+/// A number above 0 of a dimension, in mm or degrees.
+fn positive(args: &Args, i: usize, key: &str, value: &Value, unit: Dimension) -> Outcome<f64> {
+    match value {
+        Value::Number(number, dimension)
+            if *number > 0.0 && (*dimension == unit || *dimension == Dimension::BARE) =>
+        {
+            Ok(*number)
+        }
+        other => {
+            let words = format!("`{key}` needs {} above 0, got {}", unit.words(), shown(other));
+            args.fail(i, Code::WrongKind, words)
+        }
+    }
+}
+
+/// The plane of an argument: a side such as FRONT, or `{ at = ..., normal = ... }`.
+fn plane(args: &Args, i: usize) -> Outcome<(CutPlane, Option<Side>)> {
+    let through_origin = |normal| CutPlane { at: DVec3::ZERO, normal };
+    let facing = |side| {
+        Some(through_origin(match side {
+            Side::Front => DVec3::NEG_Y,
+            Side::Back => DVec3::Y,
+            Side::Left => DVec3::NEG_X,
+            Side::Right => DVec3::X,
+            Side::Top => DVec3::Z,
+            Side::Bottom => DVec3::NEG_Z,
+            Side::Iso | Side::Dimetric => return None,
+        }))
+    };
+    match args.value(i) {
+        Value::Symbol(symbol) => {
+            if let Some((plane, side)) = side(*symbol).and_then(|s| Some((facing(s)?, s))) {
+                return Ok((plane, Some(side)));
+            }
+        }
+        Value::Record(record) => {
+            let at = record.get("at").map_or(Some(DVec3::ZERO), coordinates);
+            let side = match record.get("normal") {
+                Some(Value::Symbol(symbol)) => side(*symbol),
+                _ => None,
+            };
+            let normal = side.and_then(facing).map(|plane| plane.normal);
+            let normal = normal.or_else(|| record.get("normal").and_then(coordinates));
+            let keys = record.fields().iter().all(|(key, _)| matches!(&**key, "at" | "normal"));
+            if let (Some(at), Some(normal), true) = (at, normal, keys) {
+                if normal == DVec3::ZERO {
+                    return args.degenerate(i, "needs a normal that is not zero");
+                }
+                return Ok((CutPlane { at, normal }, side));
+            }
+        }
+        _ => {}
+    }
+    let words = format!(
+        "a section plane is FRONT, BACK, LEFT, RIGHT, TOP or BOTTOM through the origin, or \
+         {{ at = [x, y, z], normal = [x, y, z] }}, got {}",
+        shown(args.value(i))
+    );
+    args.fail(i, Code::WrongKind, words)
+}
+
+/// `shapes, plane, hidden, style`: the cut, seen against the normal of the plane.
+fn section_of_shapes(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
+    let (shapes, curves) = subjects(evaluator, args)?;
+    let (plane, side) = plane(args, 1)?;
+    let spec = ViewSpec {
+        shapes,
+        curves,
+        projection: side.map_or(Projection::Direction(plane.normal), Projection::Side),
+        target: DVec3::ZERO,
+        window: None,
+        hidden: hidden(args, 2)?,
+        method: Method::Auto,
+        style: style(args, 3)?,
+        section: Some(plane),
+        center_lines: false,
+        dims: vec![],
+        place: Place(evaluator.shown_at(args.call)),
+    };
+    Ok(Value::Drawing(Arc::new(spec)))
+}
+
+/// A view with a change. The copy is counted, so that a long chain of changes has its limit.
+fn changed(
+    evaluator: &mut Evaluator,
+    args: &Args,
+    change: impl FnOnce(&mut ViewSpec),
+) -> Outcome<Value> {
+    let Value::Drawing(view) = args.value(0) else { return args.wrong(0, "a drawing") };
+    let copied = view.shapes.len() + view.curves.len() + view.dims.len();
+    evaluator.tick(copied as u64, args.call)?;
+    let mut view = ViewSpec::clone(view);
+    change(&mut view);
+    Ok(Value::Drawing(Arc::new(view)))
+}
+
+fn section_of_view(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
+    let (plane, _) = plane(args, 1)?;
+    if let Value::Drawing(view) = args.value(0)
+        && view.section.is_some()
+    {
+        return args.fail(0, Code::BadCall, "the view is a section already");
+    }
+    changed(evaluator, args, |view| view.section = Some(plane))
+}
+
+fn center_lines(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
+    changed(evaluator, args, |view| view.center_lines = true)
+}
+
+/// A view with one dimension more, whose text is argument `text`.
+fn dimensioned(
+    evaluator: &mut Evaluator,
+    args: &Args,
+    text: usize,
+    measured: Measured,
+) -> Outcome<Value> {
+    let text = if args.given(text) { Some(args.text(text)?.into()) } else { None };
+    let place = Place(evaluator.shown_at(args.call));
+    changed(evaluator, args, |view| view.dims.push(DimSpec { measured, text, place }))
+}
+
+/// `view, from, to, offset, along, text`.
+fn dim_linear(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
+    let points = vec![args.point(1)?, args.point(2)?];
+    linear(evaluator, args, points, 3)
+}
+
+/// `view, chain, offset, along, text`.
+fn dim_chain(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
+    let items = evaluator.items(args.value(1), args.span(1))?;
+    linear(evaluator, args, items.iter().filter_map(coordinates).collect(), 2)
+}
+
+fn linear(
+    evaluator: &mut Evaluator,
+    args: &Args,
+    points: Vec<DVec3>,
+    offset: usize,
+) -> Outcome<Value> {
+    if points.len() < 2 || points.windows(2).any(|pair| pair[0] == pair[1]) {
+        return fail(
+            Code::Degenerate,
+            args.span(offset - 1),
+            "a dimension needs points that differ",
+        );
+    }
+    let along = if args.given(offset + 1) { Some(args.point(offset + 1)?) } else { None };
+    if along == Some(DVec3::ZERO) {
+        return args.degenerate(offset + 1, "must not be the zero vector");
+    }
+    let measured = Measured::Linear { points, along, offset: args.number(offset)? };
+    dimensioned(evaluator, args, offset + 2, measured)
+}
+
+/// `view, radius or diameter, center, angle, text`.
+fn dim_round(evaluator: &mut Evaluator, args: &Args, diameter: bool) -> Outcome<Value> {
+    let r = args.positive(1)? / if diameter { 2.0 } else { 1.0 };
+    let (center, angle) = (args.point(2)?, args.number(3)?);
+    dimensioned(evaluator, args, 4, Measured::Round { center, r, diameter, angle })
+}
+
+/// `view, apex, from, to, r, text`.
+fn dim_angle(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
+    let (apex, from, to) = (args.point(1)?, args.point(2)?, args.point(3)?);
+    if from == apex || to == apex {
+        return args.fail(1, Code::Degenerate, "an angle needs legs that leave its apex");
+    }
+    let r = args.positive(4)?;
+    dimensioned(evaluator, args, 5, Measured::Angle { apex, from, to, r })
+}

@@ -1,0 +1,374 @@
+//! From what a model says of a view to lines on paper: makes the solids, cuts them where the view is a section,
+//! asks for visible lines, and measures dimensions.
+
+use std::{cell::RefCell, sync::Arc};
+
+use glam::{DVec2, DVec3};
+
+use super::{axes, cut};
+use crate::{
+    base::{Code, Diagnostic, Phase, Span, Watch, watch::during},
+    geom::{PolyMesh, Tolerance, trig::cos_deg, trig::sin_deg},
+    kernel::profile::{self, TextOptions},
+    output::{
+        drawing::{
+            self, Body, Camera, CameraError, Drawing, Kind, Scene, Stroke, Window, visible_lines,
+        },
+        sheet::{self, Dimension, Figure, Layer, Lettering, Shape, dimension_number},
+    },
+    realize::{self, Realizer},
+    shape::{
+        CurveSpec, Node, ShapeGraph, ShapeId, ViewSpec,
+        drawing::{DimSpec, Hidden, Measured, Method, PenName, Projection, Side, StyleSpec},
+    },
+};
+
+/// Width over height of the window that a field of view opens.
+const ASPECT: f64 = 4.0 / 3.0;
+
+/// A drawing made, and what is to be said about it.
+#[derive(Clone, Debug)]
+pub struct Drawn {
+    /// The drawing.
+    pub figure: Figure,
+    /// Warnings.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// What became of a view.
+type Outcome = Result<Arc<Drawn>, Diagnostic>;
+
+/// Draws views of the shapes of one graph; each view once.
+pub struct Drafter<'a> {
+    realizer: &'a Realizer<'a>,
+    graph: &'a ShapeGraph,
+    watch: &'a dyn Watch,
+    drawn: RefCell<Vec<(Arc<ViewSpec>, Outcome)>>,
+}
+
+impl<'a> Drafter<'a> {
+    pub fn new(realizer: &'a Realizer<'a>, graph: &'a ShapeGraph, watch: &'a dyn Watch) -> Self {
+        Drafter { realizer, graph, watch, drawn: RefCell::default() }
+    }
+
+    /// The drawing of a view. Fails with the diagnostic of a shape that cannot be made, or of a dimension that the
+    /// view does not show.
+    pub fn draw(&self, view: &Arc<ViewSpec>) -> Outcome {
+        let known = |(other, _): &&(Arc<ViewSpec>, _)| Arc::ptr_eq(other, view) || other == view;
+        if let Some((_, drawn)) = self.drawn.borrow().iter().find(known) {
+            return drawn.clone();
+        }
+        let drawn = self.make(view).map(Arc::new);
+        self.drawn.borrow_mut().push((view.clone(), drawn.clone()));
+        drawn
+    }
+
+    /// Runs `work` as one phase of the watch.
+    pub fn timed<T>(&self, phase: Phase, work: impl FnOnce() -> T) -> T {
+        during(self.watch, phase, work)
+    }
+
+    fn make(&self, view: &ViewSpec) -> Result<Drawn, Diagnostic> {
+        self.realizer.realize(self.graph, &view.shapes);
+        let mut warnings = vec![];
+        let mut solids = vec![];
+        for &shape in &view.shapes {
+            let solid = self.realizer.solid(self.graph, shape).map_err(|e| *e.diagnostic)?;
+            warnings.extend(realize::warnings(self.realizer, self.graph, shape));
+            solids.push(solid.polyhedron);
+        }
+        let camera = camera(view).map_err(|error| refused(&error, view.place.0))?;
+        during(self.watch, Phase::Drawings, || {
+            // Holes keep their centre lines when the cut takes half of them.
+            let axes = match view.center_lines {
+                true => axes::center_lines(solids.iter().map(|solid| solid.mesh()), &camera),
+                false => vec![],
+            };
+            let mut cuts = vec![];
+            if let Some(plane) = &view.section {
+                let cut = cut::cut(&mut solids, plane, &camera, self.realizer.tolerance());
+                cuts = cut.map_err(|words| at(Code::WrongKind, words, view.place.0))?;
+                if cuts.is_empty() && !solids.is_empty() {
+                    warnings.push(cut::misses(&solids, view.place.0));
+                }
+            }
+            let meshes: Vec<&PolyMesh> = solids.iter().map(|solid| solid.mesh()).collect();
+            let drawing = self.lines(view, &meshes, &axes, &camera);
+            warnings.extend(blank(&drawing, view, &meshes));
+            let dimensions = view.dims.iter().map(|dim| dimension(dim, view, &camera));
+            let dimensions = dimensions.collect::<Result<_, _>>()?;
+            let parts = view.shapes.iter().map(|&shape| name_of(self.graph, shape)).collect();
+            let style = style(&view.style);
+            Ok(Drawn { figure: Figure { drawing, parts, cuts, dimensions, style }, warnings })
+        })
+    }
+
+    fn lines(
+        &self,
+        view: &ViewSpec,
+        meshes: &[&PolyMesh],
+        axes: &[[DVec3; 2]],
+        camera: &Camera,
+    ) -> Drawing {
+        let bodies = meshes.iter().zip(0..).map(|(mesh, id)| Body { mesh, id }).collect();
+        let tolerance = self.realizer.tolerance();
+        let mut strokes: Vec<Stroke> = vec![];
+        let mut add = |points: Vec<DVec3>, kind: Kind| {
+            let id = (meshes.len() + strokes.len()) as u32;
+            strokes.push(Stroke { points, kind, id });
+        };
+        for curve in &view.curves {
+            add(points_of(curve, tolerance), Kind::Free);
+        }
+        axes.iter().for_each(|line| add(line.to_vec(), Kind::Centre));
+        let hidden = match view.hidden {
+            Hidden::Off => drawing::Hidden::Off,
+            Hidden::Dashed => drawing::Hidden::Dashed,
+            Hidden::Depth(k) => drawing::Hidden::Depth(k),
+        };
+        let method = match view.method {
+            Method::Auto => drawing::Method::Auto,
+            Method::Count => drawing::Method::Count,
+            Method::Clip => drawing::Method::Clip,
+        };
+        let standard = drawing::Options::default();
+        let crease = view.style.crease.unwrap_or(standard.crease);
+        let options = drawing::Options { hidden, method, tolerance, crease };
+        visible_lines(&Scene { bodies, strokes }, camera, &options)
+    }
+}
+
+/// Text in the embedded font.
+pub struct Letterer;
+
+impl Lettering for Letterer {
+    fn outlines(&self, text: &str, height: f64) -> Option<(Vec<Vec<DVec2>>, f64)> {
+        let fine = Tolerance::new(height * LETTER_CHORD)?;
+        let options = TextOptions { size: height, tolerance: fine, ..TextOptions::default() };
+        let set = profile::text(text, &options, None).ok()?;
+        let contours = set.region.contours().map(|contour| contour.points.clone());
+        Some((contours.collect(), set.width))
+    }
+}
+
+/// Chord error of letters for each millimetre of their height: far below what a pen shows.
+const LETTER_CHORD: f64 = 2e-3;
+
+fn at(code: Code, words: impl Into<String>, span: Span) -> Diagnostic {
+    Diagnostic::error(code, words).label(span, "")
+}
+
+fn refused(error: &CameraError, span: Span) -> Diagnostic {
+    at(Code::Degenerate, error.to_string(), span)
+}
+
+/// The camera of a view.
+fn camera(view: &ViewSpec) -> Result<Camera, CameraError> {
+    let camera = match view.projection {
+        Projection::Side(side) => Camera::view(side_view(side)).at(view.target),
+        Projection::Direction(direction) => Camera::parallel(direction)?.at(view.target),
+        Projection::Perspective { eye, fov } => {
+            let camera = Camera::perspective(eye, view.target)?;
+            fov.map_or(Ok(camera), |fov| camera.with_field_of_view(fov, ASPECT))?
+        }
+    };
+    match view.window {
+        Some([min, max]) => camera.with_window(Window { min, max }),
+        None => Ok(camera),
+    }
+}
+
+fn side_view(side: Side) -> drawing::View {
+    match side {
+        Side::Front => drawing::View::Front,
+        Side::Back => drawing::View::Back,
+        Side::Left => drawing::View::Left,
+        Side::Right => drawing::View::Right,
+        Side::Top => drawing::View::Top,
+        Side::Bottom => drawing::View::Bottom,
+        Side::Iso => drawing::View::Iso,
+        Side::Dimetric => drawing::View::Dimetric,
+    }
+}
+
+/// A curve as points; chords of an arc stay within the tolerance.
+fn points_of(curve: &CurveSpec, tolerance: Tolerance) -> Vec<DVec3> {
+    match curve {
+        CurveSpec::Polyline { points, closed } => {
+            let mut points = points.clone();
+            if *closed {
+                points.push(points[0]);
+            }
+            points
+        }
+        CurveSpec::Arc { center, r, from, to } => {
+            let half = libm::acos((1.0 - tolerance.mm() / r).clamp(0.0, 1.0)).to_degrees();
+            let parts = ((to - from).abs() / (2.0 * half).clamp(FINEST, COARSEST)).ceil();
+            let point = |i: u32| {
+                let angle = from + (to - from) * f64::from(i) / parts;
+                *center + DVec3::new(cos_deg(angle), sin_deg(angle), 0.0) * *r
+            };
+            (0..=parts as u32).map(point).collect()
+        }
+    }
+}
+
+/// Smallest and largest part of an arc, degrees.
+const FINEST: f64 = 0.1;
+const COARSEST: f64 = 15.0;
+
+/// The outermost tag of a shape.
+fn name_of(graph: &ShapeGraph, mut shape: ShapeId) -> Option<Arc<str>> {
+    loop {
+        match graph.node(shape) {
+            Node::Tag { name, .. } => return Some(name.clone()),
+            Node::Transform { child, .. } | Node::Paint { child, .. } => shape = *child,
+            _ => return None,
+        }
+    }
+}
+
+/// The warning for a drawing without lines.
+fn blank(drawing: &Drawing, view: &ViewSpec, meshes: &[&PolyMesh]) -> Option<Diagnostic> {
+    if drawing.segments > 0 || !drawing.lines.is_empty() {
+        return None;
+    }
+    let warning = |words| Diagnostic::warning(Code::EmptyResult, words).label(view.place.0, "");
+    let points = || meshes.iter().flat_map(|mesh| &mesh.points);
+    let Some(&first) = points().next() else {
+        return Some(warning("the view shows nothing: its shapes are empty"));
+    };
+    let (min, max) = points().fold((first, first), |(a, b), &p| (a.min(p), b.max(p)));
+    let corner = |p: DVec3| format!("[{}, {}, {}]", short(p.x), short(p.y), short(p.z));
+    let words = "the view shows nothing: nothing of its shapes is in the window";
+    let noted =
+        warning(words).note(format!("the shapes lie in {} to {}", corner(min), corner(max)));
+    Some(match view.window {
+        Some([min, max]) => noted.note(format!(
+            "the window is [{}, {}] to [{}, {}] on paper",
+            short(min.x),
+            short(min.y),
+            short(max.x),
+            short(max.y)
+        )),
+        None => noted,
+    })
+}
+
+/// A number for people: four decimals at most.
+pub(super) fn short(x: f64) -> String {
+    format!("{}", (x * 1e4).round() / 1e4 + 0.0)
+}
+
+fn style(spec: &StyleSpec) -> sheet::Style {
+    let mut style = sheet::Style::default();
+    for (name, change) in &spec.pens {
+        let pen = style.pen_mut(layer(*name));
+        pen.width = change.width.unwrap_or(pen.width);
+        pen.color = change.color.unwrap_or(pen.color);
+        if let Some(dash) = &change.dash {
+            pen.dash.clone_from(dash);
+        }
+    }
+    style.hatch_pitch = spec.hatch_pitch.unwrap_or(style.hatch_pitch);
+    style.text_height = spec.text_height.unwrap_or(style.text_height);
+    style
+}
+
+fn layer(name: PenName) -> Layer {
+    match name {
+        PenName::Visible => Layer::Visible,
+        PenName::Hidden => Layer::Hidden,
+        PenName::Center => Layer::Center,
+        PenName::Cutting => Layer::Cutting,
+        PenName::Section => Layer::Section,
+        PenName::Hatch => Layer::Hatch,
+        PenName::Dimension => Layer::Dimension,
+        PenName::Pattern => Layer::Pattern,
+        PenName::Free => Layer::Free,
+    }
+}
+
+/// A dimension on paper. Fails for points that the view does not show apart.
+fn dimension(spec: &DimSpec, view: &ViewSpec, camera: &Camera) -> Result<Dimension, Diagnostic> {
+    let image = |p: DVec3| {
+        let behind =
+            || at(Code::OutOfRange, "the dimension has a point behind the eye", spec.place.0);
+        camera.project(p).ok_or_else(behind)
+    };
+    let (shape, values) = match &spec.measured {
+        Measured::Linear { points, along, offset } => {
+            let images = points.iter().map(|&p| image(p)).collect::<Result<Vec<_>, _>>()?;
+            let ends = (images[0], images[images.len() - 1]);
+            let way = match along {
+                Some(along) => image(points[0] + *along)? - ends.0,
+                None => ends.1 - ends.0,
+            };
+            let Some(unit) = way.try_normalize() else {
+                let words =
+                    "the dimension has no length in this view: its direction is that of sight";
+                return Err(at(Code::Degenerate, words, spec.place.0));
+            };
+            let values = lengths(points, &images, *along, unit, view);
+            (Shape::Linear { points: images, along: unit, offset: *offset }, values)
+        }
+        Measured::Round { center, r, diameter, angle } => {
+            let value = if *diameter { 2.0 * r } else { *r };
+            let r = r * camera.magnification(*center);
+            let center = image(*center)?;
+            (Shape::Round { center, r, diameter: *diameter, angle: *angle }, vec![value])
+        }
+        Measured::Angle { apex, from, to, r } => {
+            let [center, a, b] = [image(*apex)?, image(*from)?, image(*to)?];
+            let degrees = |p: DVec2| libm::atan2(p.y - center.y, p.x - center.x).to_degrees();
+            let from_angle = degrees(a);
+            let turn = degrees(b) - from_angle;
+            let turn = if turn <= 0.0 { turn + 360.0 } else { turn };
+            let value = if is_true(view) { turn } else { between(*from - *apex, *to - *apex) };
+            let legs = [a, b];
+            (Shape::Angle { apex: center, legs, from: from_angle, turn, r: *r }, vec![value])
+        }
+    };
+    let (before, after) = match spec.measured {
+        Measured::Linear { .. } => ("", ""),
+        Measured::Round { diameter, .. } => (if diameter { "Ø" } else { "R" }, ""),
+        Measured::Angle { .. } => ("", "°"),
+    };
+    let text = |value: &f64| {
+        let number = format!("{before}{}{after}", dimension_number(*value));
+        spec.text.as_ref().map_or(number.clone(), |text| text.replace("<>", &number))
+    };
+    Ok(Dimension { shape, texts: values.iter().map(text).collect() })
+}
+
+/// Whether a view shows two of the three axes in true length.
+fn is_true(view: &ViewSpec) -> bool {
+    !matches!(
+        view.projection,
+        Projection::Side(Side::Iso | Side::Dimetric) | Projection::Perspective { .. }
+    )
+}
+
+/// Degrees between two directions.
+fn between(a: DVec3, b: DVec3) -> f64 {
+    libm::atan2(a.cross(b).length(), a.dot(b)).to_degrees()
+}
+
+/// The measured lengths: along a direction of the model where one is given, on paper in views that show true
+/// lengths, else in space.
+fn lengths(
+    points: &[DVec3],
+    images: &[DVec2],
+    along: Option<DVec3>,
+    unit: DVec2,
+    view: &ViewSpec,
+) -> Vec<f64> {
+    let pairs = points.windows(2).zip(images.windows(2));
+    pairs
+        .map(|(p, q)| match along {
+            Some(along) => (p[1] - p[0]).dot(along.normalize()).abs(),
+            None if is_true(view) => (q[1] - q[0]).dot(unit).abs(),
+            None => p[0].distance(p[1]),
+        })
+        .collect()
+}

@@ -1,0 +1,307 @@
+//! Drawings and pages as a model describes them: immutable, plain data. Nothing is drawn yet.
+//!
+//! Lengths in millimetres, angles in degrees, points in the frame of the model.
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+
+use super::node::ShapeId;
+use crate::{base::Span, geom::mesh::Color};
+
+/// A place in the source. Two descriptions made in different places are equal all the same.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Place(pub Span);
+
+impl PartialEq for Place {
+    fn eq(&self, _: &Place) -> bool {
+        true
+    }
+}
+
+/// A curve in space.
+#[derive(Clone, PartialEq, Debug)]
+pub enum CurveSpec {
+    /// Straight from point to point.
+    Polyline {
+        /// At least two points.
+        points: Vec<DVec3>,
+        /// Whether the last point joins the first.
+        closed: bool,
+    },
+    /// An arc of a circle, in a plane parallel to xy.
+    Arc {
+        /// Centre.
+        center: DVec3,
+        /// Radius.
+        r: f64,
+        /// Angle of its start from +x, counter-clockwise.
+        from: f64,
+        /// Angle of its end; clockwise when below `from`.
+        to: f64,
+    },
+}
+
+/// One of the usual directions of view.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Side {
+    /// Along +y.
+    Front,
+    /// Along -y.
+    Back,
+    /// Along +x.
+    Left,
+    /// Along -x.
+    Right,
+    /// Along -z.
+    Top,
+    /// Along +z.
+    Bottom,
+    /// From (1, -1, 1).
+    Iso,
+    /// From (1, -sqrt 7, 1).
+    Dimetric,
+}
+
+/// Where the eye is.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Projection {
+    /// One of the usual parallel ones.
+    Side(Side),
+    /// Parallel; a direction towards the eye that is not zero.
+    Direction(DVec3),
+    /// From an eye that is not at the target.
+    Perspective {
+        /// The eye.
+        eye: DVec3,
+        /// Full vertical angle, above 0 and below 180.
+        fov: Option<f64>,
+    },
+}
+
+/// Which hidden lines are drawn.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Hidden {
+    /// None.
+    Off,
+    /// All, dashed.
+    Dashed,
+    /// Those behind at most so many faces, like visible ones.
+    Depth(u32),
+}
+
+/// How hidden lines are found.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Method {
+    /// What suits the scene.
+    Auto,
+    /// By counting faces in front.
+    Count,
+    /// By clipping against faces.
+    Clip,
+}
+
+/// The classes of line that a style sets.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub enum PenName {
+    /// What is seen.
+    Visible,
+    /// What is behind something.
+    Hidden,
+    /// Axes and centres.
+    Center,
+    /// Where a section is cut.
+    Cutting,
+    /// Outlines of cut faces.
+    Section,
+    /// Hatching of cut faces.
+    Hatch,
+    /// Dimensions.
+    Dimension,
+    /// Figures on faces.
+    Pattern,
+    /// Lines in space.
+    Free,
+}
+
+impl PenName {
+    /// All of them with the words of the language.
+    pub const ALL: [(PenName, &'static str); 9] = [
+        (PenName::Visible, "visible"),
+        (PenName::Hidden, "hidden"),
+        (PenName::Center, "center"),
+        (PenName::Cutting, "cutting"),
+        (PenName::Section, "section"),
+        (PenName::Hatch, "hatch"),
+        (PenName::Dimension, "dimension"),
+        (PenName::Pattern, "pattern"),
+        (PenName::Free, "free"),
+    ];
+}
+
+/// What a style changes about one class of line.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct PenSpec {
+    /// Width, above 0.
+    pub width: Option<f64>,
+    /// Lengths of dashes and gaps in turn; empty for a full line.
+    pub dash: Option<Vec<f64>>,
+    /// Colour.
+    pub color: Option<Color>,
+}
+
+/// What a drawing changes about the standard style.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct StyleSpec {
+    /// Pens in the order they were given.
+    pub pens: Vec<(PenName, PenSpec)>,
+    /// Facets of a surface without a closed form meet in a drawn edge from this angle on.
+    pub crease: Option<f64>,
+    /// Distance of hatch lines.
+    pub hatch_pitch: Option<f64>,
+    /// Height of capitals in dimensions.
+    pub text_height: Option<f64>,
+}
+
+/// A cutting plane. What lies on the side of its normal is taken away.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct CutPlane {
+    /// A point of it.
+    pub at: DVec3,
+    /// Towards what is taken away; not zero.
+    pub normal: DVec3,
+}
+
+/// What a dimension measures.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Measured {
+    /// Distances between neighbouring points, along a direction or along the line through them.
+    Linear {
+        /// At least two.
+        points: Vec<DVec3>,
+        /// The direction, if one is given; not zero.
+        along: Option<DVec3>,
+        /// Distance of the dimension line from the first point, to its left seen along the line; negative to
+        /// the right.
+        offset: f64,
+    },
+    /// A radius or diameter.
+    Round {
+        /// Centre.
+        center: DVec3,
+        /// Radius.
+        r: f64,
+        /// Whether the diameter is written.
+        diameter: bool,
+        /// Direction of the leader on paper, from +x counter-clockwise.
+        angle: f64,
+    },
+    /// An angle.
+    Angle {
+        /// Where its legs meet.
+        apex: DVec3,
+        /// A point on the first leg; the angle is counter-clockwise from it.
+        from: DVec3,
+        /// A point on the second leg.
+        to: DVec3,
+        /// Radius of the dimension line.
+        r: f64,
+    },
+}
+
+/// A dimension of a view.
+#[derive(Clone, PartialEq, Debug)]
+pub struct DimSpec {
+    /// What it measures.
+    pub measured: Measured,
+    /// What is written in place of the measured number; `<>` in it is the number.
+    pub text: Option<Arc<str>>,
+    /// The call.
+    pub place: Place,
+}
+
+/// A view of shapes.
+#[derive(Clone, PartialEq, Debug)]
+pub struct ViewSpec {
+    /// Solids, each a body of its own.
+    pub shapes: Vec<ShapeId>,
+    /// Lines in space.
+    pub curves: Vec<Arc<CurveSpec>>,
+    /// Where the eye is.
+    pub projection: Projection,
+    /// The image of this point is the origin of the drawing.
+    pub target: DVec3,
+    /// Lower left and upper right corner of what is drawn, on paper at scale 1.
+    pub window: Option<[DVec2; 2]>,
+    /// Which hidden lines are drawn.
+    pub hidden: Hidden,
+    /// How they are found.
+    pub method: Method,
+    /// Line widths and more.
+    pub style: StyleSpec,
+    /// Where the shapes are cut.
+    pub section: Option<CutPlane>,
+    /// Whether holes and round bodies get centre lines.
+    pub center_lines: bool,
+    /// Dimensions in the order they were given.
+    pub dims: Vec<DimSpec>,
+    /// The call that made it.
+    pub place: Place,
+}
+
+/// Where a view stands on a page.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Position {
+    /// The middle of the view, from the lower left corner of the page.
+    At(DVec2),
+    /// Beside another view, where its direction belongs in the page's projection.
+    Beside {
+        /// Number of the other view on the page.
+        other: usize,
+        /// Between the two.
+        gap: f64,
+    },
+}
+
+/// A view on a page.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Placed {
+    /// The view.
+    pub view: Arc<ViewSpec>,
+    /// Where.
+    pub position: Position,
+    /// Its own scale.
+    pub scale: Option<f64>,
+    /// The call.
+    pub place: Place,
+}
+
+/// What stands in the title block.
+#[derive(Clone, PartialEq, Debug)]
+pub struct TitleSpec {
+    /// The title.
+    pub title: Arc<str>,
+    /// Further fields: what they are and what they say.
+    pub fields: Vec<(Arc<str>, Arc<str>)>,
+}
+
+/// A page with views on it.
+#[derive(Clone, PartialEq, Debug)]
+pub struct PageSpec {
+    /// Width and height.
+    pub size: DVec2,
+    /// `A4`, if it is of a named size.
+    pub name: Option<Arc<str>>,
+    /// Of all views that have none of their own: paper over model.
+    pub scale: f64,
+    /// First-angle projection: the view from above stands below. Otherwise third-angle.
+    pub first_angle: bool,
+    /// Whether a frame is drawn.
+    pub frame: bool,
+    /// The title block.
+    pub title: Option<TitleSpec>,
+    /// The views in the order they were placed.
+    pub views: Vec<Placed>,
+    /// The call that made it.
+    pub place: Place,
+}

@@ -1,0 +1,111 @@
+//! Views and sheets from the language to files: what is measured, what is written, and that it is the same every time.
+
+use std::{fs, path::Path};
+
+use serde_json::Value;
+
+use super::errors::run;
+
+/// A plate with 100 holes, seen from the front, and stairs.
+const MODEL: &str = "
+holes = for i in 0..<10 { for j in 0..<10 { cylinder(d = 8, h = 10).move(x = 12 * i - 54, y = 12 * j - 54) } }
+plate = box(120, 120, 10) - holes
+stairs = for i in 0..<5 { box(from = [10 * i, 0, 0], to = [10 * i + 10, 30, 10 * (i + 1)]) }
+view front = plate.view(from = FRONT)
+view iso = union(stairs).view(from = ISO, hidden = DASHED)
+view donut = torus(30, 10).view(from = [0, -86.60254037844386, 50])
+view cut = [plate, sphere(9)].section({ at = [0, 0, 5], normal = TOP }).center_lines()
+sheet big = page(A3, landscape = true).place(front, at = [100, 200]).title(\"A < B & \\\"C\\\"\")
+export \"both.pdf\" = { cut, iso }
+export \"front.dxf\" = front
+";
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    fs::write(folder.path().join("model.kata"), MODEL).expect("writable");
+    folder
+}
+
+/// Names and bytes of what a build with so many threads writes.
+fn build(folder: &Path, jobs: &str) -> Vec<(String, Vec<u8>)> {
+    let out = format!("out{jobs}");
+    let output = run(folder, &["build", "model.kata", "-o", &out, "-j", jobs]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && said.is_empty(), "{said}");
+    let entries = fs::read_dir(folder.join(&out)).expect("readable");
+    let mut files: Vec<_> = entries
+        .map(|entry| {
+            let entry = entry.expect("readable");
+            let name = entry.file_name().to_string_lossy().into_owned();
+            (name, fs::read(entry.path()).expect("readable"))
+        })
+        .collect();
+    files.sort();
+    files
+}
+
+#[test]
+fn views_are_measured() {
+    let folder = folder();
+    let output = run(folder.path(), &["measure", "model.kata", "--json"]);
+    let value: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let measured = |view: &str, what: &str| value["views"][view][what].as_f64().expect("a number");
+    let near = |found: f64, needed: f64| (found - needed).abs() < 1e-5 * needed;
+    assert!(near(measured("front", "visible"), 260.0), "{value}");
+    assert!(near(measured("front", "hidden"), 200.0), "{value}");
+    assert!(near(measured("iso", "visible"), 390.0 * (2.0f64 / 3.0).sqrt()), "{value}");
+    assert!(near(measured("donut", "visible"), 291.784), "{value}");
+    assert!(value["views"].get("big").is_none());
+}
+
+#[test]
+fn the_same_files_on_one_thread_and_two() {
+    let folder = folder();
+    let (one, two) = (build(folder.path(), "1"), build(folder.path(), "2"));
+    let names: Vec<&str> = one.iter().map(|(name, _)| &**name).collect();
+    let expected = ["big.svg", "both-cut.pdf", "both-iso.pdf", "donut.svg", "front.dxf"];
+    assert_eq!(names, expected);
+    assert!(one == two);
+    let text = |name: &str| {
+        let (_, bytes) = one.iter().find(|file| file.0 == name).expect("written");
+        String::from_utf8_lossy(bytes).into_owned()
+    };
+    let page = text("big.svg");
+    assert!(page.contains("width=\"420mm\"") && page.contains("class=\"frame\""));
+    usvg::Tree::from_str(&page, &usvg::Options::default()).expect("an SVG");
+    assert!(text("front.dxf").contains("LWPOLYLINE") && text("both-cut.pdf").starts_with("%PDF"));
+}
+
+#[test]
+fn drawings_come_back_as_profiles() {
+    let folder = folder();
+    let view = ["view", "model.kata", "--from", "TOP", "-o", "top.dxf"];
+    assert!(!run(folder.path(), &view).status.success(), "the model has no part");
+    let part = "part p = box(40, 30, 5)";
+    fs::write(folder.path().join("part.kata"), part).expect("writable");
+    for file in ["top.svg", "top.dxf"] {
+        let output = run(folder.path(), &["view", "part.kata", "--from", "TOP", "-o", file]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        assert_eq!(String::from_utf8_lossy(&output.stdout).trim(), file);
+    }
+    let back =
+        "assert near(area(import(\"top.dxf\")), 1200mm^2)\npart q = import(\"top.dxf\").extrude(1)";
+    fs::write(folder.path().join("back.kata"), back).expect("writable");
+    let output = run(folder.path(), &["measure", "back.kata"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn a_mesh_is_drawn_ad_hoc() {
+    let folder = folder();
+    fs::write(folder.path().join("part.kata"), "part p = box(40, 30, 5)").expect("writable");
+    run(folder.path(), &["build", "part.kata", "-o", "."]);
+    let arguments = ["view", "p.stl", "--from", "1,-2,1", "--hidden", "dashed", "-o", "p.pdf"];
+    let output = run(folder.path(), &arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(folder.path().join("p.pdf").exists());
+    for bad in [["--from", "SIDE"], ["--hidden", "some"], ["--eye", "0,0,0"], ["-o", "p.png"]] {
+        let output = run(folder.path(), &["view", "p.stl", bad[0], bad[1]]);
+        assert_eq!(output.status.code(), Some(2), "{bad:?}");
+    }
+}
