@@ -50,7 +50,7 @@ fn plate_with_1000_holes() {
 
 #[divan::bench(sample_count = 5)]
 fn sphere_minus_sphere_100k() {
-    build("tests/bench/models/spheres.kata");
+    build("tests/bench/models/spheres224.kata");
 }
 
 #[divan::bench(sample_count = 10)]

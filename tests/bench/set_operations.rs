@@ -4,7 +4,9 @@
 //! ```sh
 //! cargo bench --bench set_operations -- list
 //! cargo bench --bench set_operations -- leaves chain folder   # OFF files and tree.json
-//! cargo bench --bench set_operations -- serve chain           # a line in, milliseconds out
+//! cargo bench --bench set_operations -- serve chain           # an empty line in, milliseconds out;
+//!                                                             # a path in, the result as OFF there
+//! cargo bench --bench set_operations -- judge result.off      # is it closed, does it cross itself?
 //! ```
 
 use std::{
@@ -17,10 +19,13 @@ use std::{
 
 use glam::{DMat3, DQuat, DVec3, dvec3};
 use katachi::{
-    geom::Placement,
+    geom::{Bounds, Placement, PolyMesh, triangulate::triangulate},
+    input::read_mesh,
     kernel::brep::{
         Polyhedron,
-        boolean::{Evaluated, Tree, evaluate},
+        boolean::{Tree, evaluate},
+        crossing::crossings,
+        measure::volume,
         primitive::{cone, cuboid, sphere},
     },
     output::mesh::{MeshFormat, NamedMesh, write},
@@ -51,7 +56,8 @@ fn main() {
         ["list"] => MODELS.iter().for_each(|m| println!("{}", m.0)),
         ["leaves", name, folder] => leaves(&model(name), Path::new(folder)),
         ["serve", name] => serve(&model(name)),
-        _ => println!("list | leaves <model> <folder> | serve <model>"),
+        ["judge", file] => println!("{}", judge(Path::new(file))),
+        _ => println!("list | leaves <model> <folder> | serve <model> | judge <file>"),
     }
 }
 
@@ -60,27 +66,61 @@ fn model(name: &str) -> Tree {
     found.unwrap_or_else(|| panic!("no model `{name}`")).1()
 }
 
-/// Evaluates the model for each line of the input and answers with the time.
+/// Evaluates the model for each empty line of the input and answers with the time; writes the last
+/// result to the path that any other line gives.
 #[allow(clippy::disallowed_methods, reason = "a benchmark reads the clock")]
 fn serve(tree: &Tree) {
+    let mut solid = Polyhedron::empty();
     for line in io::stdin().lock().lines() {
-        line.expect("standard input is text");
-        let start = Instant::now();
-        let result = evaluate(tree).expect("the model is valid");
-        let ms = start.elapsed().as_secs_f64() * 1e3;
-        println!("{}", answer(&result, ms));
+        let path = line.expect("standard input is text");
+        if path.is_empty() {
+            let start = Instant::now();
+            solid = evaluate(tree).expect("the model is valid").solid;
+            let ms = start.elapsed().as_secs_f64() * 1e3;
+            println!("{}", json!({ "ms": ms, "peak": peak(), "volume": volume(&solid) }));
+        } else {
+            off(&solid, Path::new(&path));
+            println!("{{}}");
+        }
         io::stdout().flush().expect("standard output is open");
     }
 }
 
-fn answer(result: &Evaluated, ms: f64) -> Value {
-    let mesh = result.solid.mesh();
+/// The most memory that this process has held, kilobytes; 0 where the system does not say.
+fn peak() -> u64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"));
+    line.and_then(|l| l.trim().trim_end_matches(" kB").parse().ok()).unwrap_or(0)
+}
+
+/// What is right and wrong with the triangles of a file, whoever wrote it.
+fn judge(file: &Path) -> Value {
+    let bytes = fs::read(file).expect("the file can be read");
+    let mesh = read_mesh("result.off", &bytes).expect("the file is OFF");
     json!({
-        "ms": ms,
         "triangles": mesh.triangle_count(),
-        "volume": katachi::kernel::brep::measure::volume(&result.solid),
         "closed": Polyhedron::new(mesh.clone()).is_ok(),
+        "slivers": slivers(&mesh),
+        "crossings": crossings(&mesh).len(),
     })
+}
+
+/// A triangle is degenerate if it is less high than this share of the size of its solid.
+const DEGENERATE: f64 = 1e-12;
+
+/// The number of degenerate triangles.
+fn slivers(mesh: &PolyMesh) -> usize {
+    let Bounds { min, max } = Bounds::of(mesh.points.iter().copied());
+    let limit = (max - min).length() * DEGENERATE;
+    let triangles = triangulate(mesh).corners;
+    let corners = triangles.iter().map(|t| t.map(|c| mesh.points[c as usize]));
+    corners.filter(|&[a, b, c]| height([a, b, c]) <= limit).count()
+}
+
+/// The height of a triangle over its longest side.
+fn height([a, b, c]: [DVec3; 3]) -> f64 {
+    let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+    (b - a).cross(c - a).length() / longest.max(f64::MIN_POSITIVE)
 }
 
 /// Writes every leaf where it stands, as triangles, and the tree over their numbers.
@@ -102,14 +142,19 @@ fn written(tree: &Tree, at: &Placement, folder: &Path, count: &mut u32) -> Value
         Tree::Intersection(list) => parts("intersection", list),
         Tree::Placed(inner, child) => written(child, &at.after(inner), folder, count),
         Tree::Leaf(solid) => {
-            let (solid, number) = (solid.placed(at), *count);
+            let number = *count;
             *count += 1;
-            let part = [NamedMesh { name: "leaf", mesh: solid.mesh() }];
-            let bytes = write(MeshFormat::Off, &part).expect("a leaf is finite");
-            fs::write(folder.join(format!("{number}.off")), bytes).expect("the folder exists");
+            off(&solid.placed(at), &folder.join(format!("{number}.off")));
             json!(number)
         }
     }
+}
+
+/// Writes a solid as triangles.
+fn off(solid: &Polyhedron, file: &Path) {
+    let part = [NamedMesh { name: "solid", mesh: solid.mesh() }];
+    let bytes = write(MeshFormat::Off, &part).expect("a solid is finite");
+    fs::write(file, bytes).expect("the folder exists");
 }
 
 fn leaf(solid: Polyhedron) -> Tree {

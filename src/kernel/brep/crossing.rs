@@ -25,24 +25,70 @@ type Triangle = [DVec3; 3];
 /// assert!(crossing(&two).is_some());
 /// ```
 pub fn crossing(mesh: &PolyMesh) -> Option<DVec3> {
-    let indices = triangulate(mesh).corners;
-    let corners: Vec<Triangle> =
-        indices.iter().map(|t| t.map(|c| mesh.points[c as usize])).collect();
-    let boxes: Vec<Bounds> = corners.iter().map(|t| Bounds::of(*t)).collect();
+    let soup = Soup::of(mesh);
     let mut first = None;
-    Bvh::new(&boxes).self_pairs(|i, j| {
-        let (a, b) = (i as usize, j as usize);
-        let neighbours = indices[a].iter().any(|c| indices[b].contains(c));
-        if !neighbours && first.is_none_or(|known| (i, j) < known) && meet(&corners[a], &corners[b])
-        {
+    Bvh::new(&soup.boxes).self_pairs(|i, j| {
+        let known = first.is_some_and(|known| known <= (i, j));
+        if !known && !soup.are_neighbours(i, j) && soup.meet(i, j) {
             first = Some((i, j));
         }
     });
-    let (i, j) = first?;
-    let common = |k: fn(DVec3, DVec3) -> DVec3, of: fn(&Bounds) -> DVec3| {
-        k(of(&boxes[i as usize]), of(&boxes[j as usize]))
-    };
-    Some((common(DVec3::max, |b| b.min) + common(DVec3::min, |b| b.max)) / 2.0)
+    first.map(|(i, j)| soup.place(i, j))
+}
+
+/// A place in mm for every two triangles of the boundary that pass through each other or lie on each other,
+/// those that share a corner or an edge not left out; in a fixed order.
+///
+/// ```
+/// use glam::DVec3;
+/// use katachi::kernel::brep::{crossing::crossings, primitive::cuboid};
+/// let mut two = cuboid(DVec3::ZERO, DVec3::splat(2.0)).into_mesh();
+/// assert_eq!(crossings(&two).len(), 0);
+/// two.append(cuboid(DVec3::ONE, DVec3::new(3.0, 3.5, 4.0)).mesh());
+/// assert_eq!(crossings(&two).len(), 16);
+/// ```
+pub fn crossings(mesh: &PolyMesh) -> Vec<DVec3> {
+    let soup = Soup::of(mesh);
+    let mut places = vec![];
+    Bvh::new(&soup.boxes).self_pairs(|i, j| {
+        if soup.meet(i, j) {
+            places.push(soup.place(i, j));
+        }
+    });
+    places
+}
+
+/// The triangles of a mesh.
+struct Soup {
+    indices: Vec<[u32; 3]>,
+    corners: Vec<Triangle>,
+    boxes: Vec<Bounds>,
+}
+
+impl Soup {
+    fn of(mesh: &PolyMesh) -> Soup {
+        let indices = triangulate(mesh).corners;
+        let corners: Vec<Triangle> =
+            indices.iter().map(|t| t.map(|c| mesh.points[c as usize])).collect();
+        let boxes = corners.iter().map(|t| Bounds::of(*t)).collect();
+        Soup { indices, corners, boxes }
+    }
+
+    /// Whether two triangles share a corner.
+    fn are_neighbours(&self, i: u32, j: u32) -> bool {
+        let [a, b] = [i, j].map(|t| &self.indices[t as usize]);
+        a.iter().any(|corner| b.contains(corner))
+    }
+
+    fn meet(&self, i: u32, j: u32) -> bool {
+        meet(&self.corners[i as usize], &self.corners[j as usize])
+    }
+
+    /// The middle of what the boxes of two triangles have in common.
+    fn place(&self, i: u32, j: u32) -> DVec3 {
+        let [a, b] = [i, j].map(|t| &self.boxes[t as usize]);
+        (a.min.max(b.min) + a.max.min(b.max)) / 2.0
+    }
 }
 
 /// Whether two triangles pass through each other, have area in common, or one has an edge on the other.
