@@ -52,7 +52,11 @@ pub fn orient3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {
     let permanent = p.x * (q.y * r.z + q.z * r.y)
         + p.y * (q.z * r.x + q.x * r.z)
         + p.z * (q.x * r.y + q.y * r.x);
-    if det.abs() > BOUND_3D * permanent { det } else { exact_3d(a, b, c, d) }
+    if det.abs() > BOUND_3D * permanent {
+        return det;
+    }
+    // Without terms there is nothing to round: d is one of the others, mostly.
+    if permanent == 0.0 { 0.0 } else { exact_3d(a, b, c, d) }
 }
 
 /// A sum of floats of growing size that do not overlap: an exact number. Zeros are left out.

@@ -19,8 +19,9 @@ const MOST_STEPS: usize = 1 << 16;
 pub fn warnings(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Vec<Diagnostic> {
     let Ok(solid) = realizer.solid(graph, id) else { return vec![] };
     let snap = large_snap(realizer, graph, id, &solid);
+    let crossing = solid.crossing.map(|place| crosses(graph, id, place));
     let empty = if solid.polyhedron.is_empty() { empty_cut(realizer, graph, id) } else { None };
-    empty.into_iter().chain(snap).collect()
+    empty.into_iter().chain(snap).chain(crossing).collect()
 }
 
 /// The warning for a part that is empty after a cut, with the boxes of what was cut and of what cut it.
@@ -55,6 +56,15 @@ fn large_snap(
             .note(format!("the tolerance is {tolerance} mm"))
             .help("keep far-away parts out of one set operation, or move the model to the origin")
     })
+}
+
+/// The warning for a boundary that rounding has made cross itself.
+fn crosses(graph: &ShapeGraph, id: ShapeId, DVec3 { x, y, z }: DVec3) -> Diagnostic {
+    let words = "the boundary crosses itself by less than rounding can tell apart";
+    Diagnostic::warning(Code::Snap, words)
+        .label(graph.origin(id), "")
+        .note(format!("near [{x}, {y}, {z}] mm of its set operation"))
+        .help("let faces that nearly coincide coincide, or keep them farther apart")
 }
 
 /// The outermost difference or intersection of a shape.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 use rustc_hash::FxHashMap;
 
 use super::{
@@ -34,13 +34,21 @@ impl Coded for BooleanError {
 
 /// Makes the solid of a set operation whose leaves are made.
 pub fn make(realizer: &Realizer, graph: &ShapeGraph, unit: Stretched) -> Made<Solid> {
-    let mut builder =
-        Builder { realizer, graph, unit, painted: FxHashMap::default(), triangles: 0, snap: 0.0 };
+    let mut builder = Builder {
+        realizer,
+        graph,
+        unit,
+        painted: FxHashMap::default(),
+        triangles: 0,
+        snap: 0.0,
+        crossing: None,
+    };
     let tree = builder.operation(unit.id, DMat3::IDENTITY, &Paint::default())?;
     check_size(graph, unit.id, builder.triangles)?;
     let evaluated = boolean::evaluate(&tree).at(graph.origin(unit.id))?;
     let snap = evaluated.snap.max(builder.snap);
-    Ok(Solid { polyhedron: Arc::new(evaluated.solid), snap })
+    let crossing = evaluated.crossing.or(builder.crossing);
+    Ok(Solid { polyhedron: Arc::new(evaluated.solid), snap, crossing })
 }
 
 struct Builder<'a> {
@@ -51,6 +59,7 @@ struct Builder<'a> {
     painted: FxHashMap<(Stretched, Paint), Arc<Polyhedron>>,
     triangles: usize,
     snap: f64,
+    crossing: Option<DVec3>,
 }
 
 impl Builder<'_> {
@@ -100,6 +109,7 @@ impl Builder<'_> {
         let leaf = structure::leaf(self.graph, self.unit, core, linear);
         let solid = self.realizer.unit_made(leaf)?;
         self.snap = self.snap.max(solid.snap * Stretch::of(linear).factor());
+        self.crossing = self.crossing.or(solid.crossing);
         self.triangles += solid.polyhedron.mesh().triangle_count();
         if paint.is_none() {
             return Ok(Tree::Leaf(solid.polyhedron));

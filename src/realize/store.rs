@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use glam::DVec3;
 use rustc_hash::FxHashMap;
 
 use super::{failure::Made, figure::Figure};
@@ -14,12 +15,14 @@ pub struct Solid {
     pub polyhedron: Arc<Polyhedron>,
     /// The largest movement of a corner by a set operation on the way here, mm.
     pub snap: f64,
+    /// A place in mm, where the set operation stood, in which rounding made the boundary cross itself.
+    pub crossing: Option<DVec3>,
 }
 
 impl Solid {
     /// A solid that no set operation has touched.
     pub fn exact(polyhedron: Polyhedron) -> Solid {
-        Solid { polyhedron: Arc::new(polyhedron), snap: 0.0 }
+        Solid { polyhedron: Arc::new(polyhedron), snap: 0.0, crossing: None }
     }
 }
 

@@ -152,17 +152,34 @@ impl PlaneFace {
         orient2d(self.plane[a as usize], self.plane[b as usize], self.plane[c as usize])
     }
 
-    /// The face with loops joined where they share a point: each edge that comes in goes on along the
-    /// first edge that leaves clockwise of it, so that every corner is a wedge of the inside. `None` if
-    /// no two corners are one point.
+    /// The face with loops joined where they touch: each edge that comes in goes on along the first edge
+    /// that leaves clockwise of it, so that every corner is a wedge of the inside. `None` if no two corners
+    /// are at one place.
+    ///
+    /// Corners at one place that are different points are joined too, unless that would lead from one to
+    /// another.
     fn with_touching_loops_joined(&self) -> Option<PlaneFace> {
-        let mut order: Vec<(u32, u32)> = self.index.iter().copied().zip(0..).collect();
-        order.sort_unstable();
-        order.windows(2).find(|w| w[0].0 == w[1].0)?;
-        let mut face = self.clone();
-        for group in order.chunk_by(|a, b| a.0 == b.0).filter(|g| g.len() > 1) {
-            face.join(&group.iter().map(|g| g.1).collect::<Vec<_>>());
+        let place = |a: u32, b: u32| {
+            let [p, q] = [a, b].map(|c| self.plane[c as usize]);
+            p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y))
+        };
+        let point = |a: u32, b: u32| self.index[a as usize].cmp(&self.index[b as usize]);
+        let face = self.joined(place)?;
+        let before = |next: &u32| self.index[face.prev[*next as usize] as usize];
+        if self.next.iter().map(before).eq(self.index.iter().copied()) {
+            return Some(face);
         }
+        self.joined(point)
+    }
+
+    /// The face with the edges paired at corners that are the same in an order; `None` if there are none.
+    fn joined(&self, order: impl Fn(u32, u32) -> Ordering) -> Option<PlaneFace> {
+        let mut corners: Vec<u32> = (0..self.len() as u32).collect();
+        corners.sort_unstable_by(|&a, &b| order(a, b).then(a.cmp(&b)));
+        let same = |a: &u32, b: &u32| order(*a, *b).is_eq();
+        corners.windows(2).find(|w| same(&w[0], &w[1]))?;
+        let mut face = self.clone();
+        corners.chunk_by(same).filter(|g| g.len() > 1).for_each(|group| face.join(group));
         Some(face)
     }
 

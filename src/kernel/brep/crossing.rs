@@ -1,16 +1,20 @@
 //! Where a closed surface crosses or covers itself.
 
 use glam::{DVec2, DVec3};
+use rustc_hash::FxHashMap;
 
 use super::Polyhedron;
 use crate::geom::{
     Bounds, PolyMesh,
     bvh::Bvh,
     orient::{orient2d, orient3d},
-    triangulate::triangulate,
+    triangulate::{triangulate, triangulate_face},
 };
 
 type Triangle = [DVec3; 3];
+
+/// What rounding makes of a corner in a plane: a few units in the last place of its coordinates.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// A place in mm where the boundary of a solid passes through itself or lies on itself; `None` if it does
 /// nowhere. Decided by exact signs. Triangles that share a corner are not compared; shells that share an edge
@@ -37,7 +41,8 @@ pub fn crossing(mesh: &PolyMesh) -> Option<DVec3> {
 }
 
 /// A place in mm for every two triangles of the boundary that pass through each other or lie on each other,
-/// those that share a corner or an edge not left out; in a fixed order.
+/// those that share a corner or an edge not left out; in a fixed order. A solid that stands on a face with an
+/// edge or a corner, as exactly as coordinates can say, touches it there and does not cross it.
 ///
 /// ```
 /// use glam::DVec3;
@@ -49,29 +54,70 @@ pub fn crossing(mesh: &PolyMesh) -> Option<DVec3> {
 /// ```
 pub fn crossings(mesh: &PolyMesh) -> Vec<DVec3> {
     let soup = Soup::of(mesh);
-    let mut places = vec![];
-    Bvh::new(&soup.boxes).self_pairs(|i, j| {
-        if soup.meet(i, j) {
-            places.push(soup.place(i, j));
-        }
-    });
-    places
+    soup.crossings(|_, _| true).into_iter().map(|[i, j]| soup.place(i, j)).collect()
+}
+
+/// Pairs of faces, at least one of them suspected, that cross or lie on each other, and a place in mm where
+/// two do.
+pub(super) struct Tangle {
+    /// The faces.
+    pub faces: Vec<[u32; 2]>,
+    /// The place.
+    pub place: DVec3,
+}
+
+/// What the suspected faces of a mesh cross among its first `count` faces; `None` if nothing.
+pub(super) fn tangle(mesh: &PolyMesh, count: usize, suspects: &[u32]) -> Option<Tangle> {
+    if suspects.is_empty() {
+        return None;
+    }
+    let bounds = |face: u32| {
+        Bounds::of(mesh.face(face as usize).outer().iter().map(|&c| mesh.points[c as usize]))
+    };
+    let boxes: Vec<Bounds> = suspects.iter().map(|&face| bounds(face)).collect();
+    let mut suspected = vec![false; count];
+    suspects.iter().for_each(|&face| suspected[face as usize] = true);
+    let hierarchy = Bvh::new(&boxes);
+    let near = (0..count as u32)
+        .filter(|&f| suspected[f as usize] || !hierarchy.overlapping(&bounds(f)).is_empty());
+    let (soup, owners) = Soup::of_faces(mesh, near);
+    let pair = |i: u32, j: u32| [i, j].map(|t| owners[t as usize]);
+    let is_suspected = |i, j| pair(i, j).iter().any(|&f| suspected[f as usize]);
+    let found = soup.crossings(is_suspected);
+    let &[i, j] = found.first()?;
+    let faces = found.iter().map(|&[i, j]| pair(i, j)).collect();
+    Some(Tangle { faces, place: soup.place(i, j) })
 }
 
 /// The triangles of a mesh.
-struct Soup {
+struct Soup<'a> {
+    points: &'a [DVec3],
     indices: Vec<[u32; 3]>,
     corners: Vec<Triangle>,
     boxes: Vec<Bounds>,
 }
 
-impl Soup {
-    fn of(mesh: &PolyMesh) -> Soup {
-        let indices = triangulate(mesh).corners;
+impl Soup<'_> {
+    fn of(mesh: &PolyMesh) -> Soup<'_> {
+        Soup::new(mesh, triangulate(mesh).corners)
+    }
+
+    /// The triangles of some faces, and the face of each.
+    fn of_faces(mesh: &PolyMesh, faces: impl Iterator<Item = u32>) -> (Soup<'_>, Vec<u32>) {
+        let (mut indices, mut owners) = (vec![], vec![]);
+        for face in faces {
+            let loops: Vec<&[u32]> = mesh.face(face as usize).loops().collect();
+            triangulate_face(&mesh.points, &loops, &mut indices);
+            owners.resize(indices.len(), face);
+        }
+        (Soup::new(mesh, indices), owners)
+    }
+
+    fn new(mesh: &PolyMesh, indices: Vec<[u32; 3]>) -> Soup<'_> {
         let corners: Vec<Triangle> =
             indices.iter().map(|t| t.map(|c| mesh.points[c as usize])).collect();
         let boxes = corners.iter().map(|t| Bounds::of(*t)).collect();
-        Soup { indices, corners, boxes }
+        Soup { points: &mesh.points, indices, corners, boxes }
     }
 
     /// Whether two triangles share a corner.
@@ -82,6 +128,50 @@ impl Soup {
 
     fn meet(&self, i: u32, j: u32) -> bool {
         meet(&self.corners[i as usize], &self.corners[j as usize])
+    }
+
+    /// For each edge and each way along it the corner beyond the edge from the triangle that runs that way.
+    fn beyond(&self) -> FxHashMap<[u32; 2], u32> {
+        let sides = |t: &[u32; 3]| [0, 1, 2].map(|k| ([t[(k + 1) % 3], t[k]], t[(k + 2) % 3]));
+        self.indices.iter().flat_map(sides).collect()
+    }
+
+    /// The pairs of triangles that cross or cover each other and do not only touch, among those asked for.
+    fn crossings(&self, is_asked: impl Fn(u32, u32) -> bool) -> Vec<[u32; 2]> {
+        let mut found = vec![];
+        Bvh::new(&self.boxes).self_pairs(|i, j| {
+            if is_asked(i, j) && self.meet(i, j) {
+                found.push([i, j]);
+            }
+        });
+        if !found.is_empty() {
+            let beyond = self.beyond();
+            found.retain(|&[i, j]| !self.touch(i, j, &beyond) && !self.touch(j, i, &beyond));
+        }
+        found
+    }
+
+    /// Whether triangle `i` only stands on `j`, up to rounding of coordinates: with a corner in its plane, or
+    /// with an edge and on the same side as the triangle beyond that edge.
+    fn touch(&self, i: u32, j: u32, beyond: &FxHashMap<[u32; 2], u32>) -> bool {
+        let (corners, [a, b, c]) = (self.indices[i as usize], self.corners[j as usize]);
+        let reach = [a, b, c].iter().fold(0.0, |reach: f64, p| reach.max(p.abs().max_element()));
+        let near = (b - a).cross(c - a).length() * reach * ROUNDING;
+        let side = |corner: u32| {
+            let height = orient3d(a, b, c, self.points[corner as usize]);
+            if height.abs() <= near { 0.0 } else { height }
+        };
+        let sides = corners.map(side);
+        let far = || sides.iter().filter(|s| **s != 0.0);
+        match far().count() {
+            2 => far().product::<f64>() > 0.0,
+            1 => (0..3).any(|k| {
+                let edge = [corners[k], corners[(k + 1) % 3]];
+                let next = beyond.get(&edge).map_or(0.0, |&next| side(next));
+                sides[(k + 2) % 3] * next > 0.0
+            }),
+            _ => false,
+        }
     }
 
     /// The middle of what the boxes of two triangles have in common.
@@ -209,6 +299,19 @@ mod tests {
         let ball = crate::kernel::brep::primitive::sphere(0.5, 10);
         let up = crate::geom::Placement::new(glam::DMat3::IDENTITY, dvec3(1., 1., 2.));
         assert!(crossing(&with(&ball.placed(&up))).is_some());
+    }
+
+    #[test]
+    fn a_box_that_stands_on_its_edge_touches_and_one_sunk_in_crosses() {
+        let turn = glam::DMat3::from_cols(dvec3(1., 0., 1.), DVec3::Y, dvec3(-1., 0., 1.));
+        let standing = |low: f64| {
+            let place = crate::geom::Placement::new(turn, dvec3(1., 0.5, low));
+            with(&cuboid(DVec3::ZERO, dvec3(1., 1., 1.)).placed(&place))
+        };
+        assert!(crossing(&standing(2.0)).is_some());
+        assert_eq!(crossings(&standing(2.0)).len(), 0);
+        assert!(!crossings(&standing(1.5)).is_empty());
+        assert_eq!(crossings(&standing(2.5)).len(), 0);
     }
 
     #[test]

@@ -9,17 +9,26 @@ use katachi::{
     },
 };
 
-use super::solids::*;
+use super::{solids::*, soundness};
 
 fn solid(tree: &Tree) -> Polyhedron {
     evaluate(tree).expect("a result").solid
 }
 
+/// The angles by which the cases are turned, degrees.
+const TURN: [f64; 3] = [17.0, 23.0, 41.0];
+
+/// A case upright, turned as a whole, and with every part turned.
+fn in_three_ways(tree: Tree) -> [Tree; 3] {
+    [tree.clone(), each_turned(TURN, &tree), turned(TURN, tree)]
+}
+
 /// What a case must give: volume, triangles, Euler number; upright and turned.
 #[track_caller]
 fn check(tree: Tree, expected_volume: f64, triangles: usize, euler_number: i64) {
-    for tree in [tree.clone(), turned([17.0, 23.0, 41.0], tree)] {
+    for tree in in_three_ways(tree) {
         let solid = solid(&tree);
+        assert_eq!(soundness::fault(&solid), None);
         let found = volume(&solid);
         assert!(
             (found - expected_volume).abs() <= 1e-9 * expected_volume.abs().max(1.0),
@@ -82,6 +91,20 @@ fn corner_to_corner() {
 }
 
 #[test]
+fn a_post_whose_corner_stands_on_the_rim() {
+    let outline = [(2.0, 1.5), (1.0, 2.0), (1.0, 1.0)].map(DVec2::from);
+    let post = |low: f64| leaf(prism(&outline, low, 3.0, Surface::Plane));
+    let plate = || block([0.0; 3], [2.0, 3.0, 1.0]);
+    check(union(vec![plate(), post(1.0)]), 7.0, 24, 2);
+    check(union(vec![plate(), post(0.0)]), 7.0, 24, 2);
+    for tree in in_three_ways(less(vec![plate(), post(0.5)])) {
+        let solid = solid(&tree);
+        assert_eq!(soundness::fault(&solid), None);
+        assert!((volume(&solid) - 5.75).abs() < 1e-12);
+    }
+}
+
+#[test]
 fn a_ring_that_touches_itself_along_an_edge() {
     let ring = union(vec![
         block([0.0, 0.0, 0.0], [3.0, 1.0, 1.0]),
@@ -89,8 +112,9 @@ fn a_ring_that_touches_itself_along_an_edge() {
         block([0.0, 2.0, 0.0], [2.0, 3.0, 1.0]),
         block([2.0, 0.0, 0.0], [3.0, 2.0, 1.0]),
     ]);
-    for tree in [ring.clone(), turned([17.0, 23.0, 41.0], ring)] {
+    for tree in in_three_ways(ring) {
         let solid = solid(&tree);
+        assert_eq!(soundness::fault(&solid), None);
         assert!((volume(&solid) - 7.0).abs() < 1e-9);
     }
 }
@@ -126,23 +150,44 @@ fn through_hole() {
 }
 
 #[test]
+fn flush_slot() {
+    let a = block([0.0; 3], [3.0; 3]);
+    let slot = block([1.0, 1.0, 2.0], [2.0, 2.0, 3.0]);
+    check(less(vec![a.clone(), slot]), 26.0, 28, 2);
+    let open = block([1.0, 0.0, 1.0], [2.0, 3.0, 2.0]);
+    check(less(vec![a.clone(), open.clone()]), 24.0, 32, 0);
+    check(union(vec![less(vec![a, open.clone()]), open]), 27.0, 12, 2);
+}
+
+#[test]
 fn cylinder_flush_in_a_box() {
-    let box_volume = 4.0 * 4.0 * 2.0;
-    let rod = cylinder([2.0, 2.0], 1.0, 0.0, 2.0, 32);
-    let hole = volume(&rod);
-    let tree =
-        |op: fn(Vec<Tree>) -> Tree| op(vec![block([0.0; 3], [4.0, 4.0, 2.0]), leaf(rod.clone())]);
-    check(tree(Tree::Union), box_volume, 12, 2);
-    let snapped = |tree: Tree, expected: f64| {
-        let upright = solid(&tree);
-        let turned = solid(&turned([17.0, 23.0, 41.0], tree));
-        assert!((volume(&upright) - expected).abs() < 1e-6);
-        assert!((volume(&turned) - volume(&upright)).abs() < 1e-9);
-        assert_eq!(upright.mesh().triangle_count(), turned.mesh().triangle_count());
-        assert_eq!(upright.mesh().triangle_count(), 2 * 36 + 8 + 2 * 32);
-        assert_eq!(euler(&upright), 0);
-    };
-    snapped(tree(Tree::Difference), box_volume - hole);
+    let plate = || block([0.0; 3], [4.0, 4.0, 2.0]);
+    for sides in [5, 32, 99] {
+        let rod = cylinder([2.0, 2.0], 1.0, 0.0, 2.0, sides);
+        let (hole, sides) = (volume(&rod), sides as usize);
+        let rod = leaf(rod);
+        check(union(vec![plate(), rod.clone()]), 32.0, 12, 2);
+        let drilled = less(vec![plate(), rod.clone()]);
+        for tree in in_three_ways(drilled.clone()) {
+            let solid = solid(&tree);
+            assert_eq!(soundness::fault(&solid), None);
+            assert!((volume(&solid) - (32.0 - hole)).abs() < 1e-6);
+            assert_eq!(solid.mesh().triangle_count(), 2 * (4 + sides) + 8 + 2 * sides);
+            assert_eq!(euler(&solid), 0);
+        }
+        check(union(vec![drilled, rod]), 32.0, 12, 2);
+    }
+}
+
+#[test]
+fn a_cylinder_half_in_a_wall() {
+    let rod = leaf(cylinder([2.0, 0.0], 1.0, 0.0, 3.0, 24));
+    let half = less(vec![rod, block([0.0; 3], [4.0, 2.0, 3.0])]);
+    for tree in in_three_ways(half) {
+        let solid = solid(&tree);
+        assert_eq!(soundness::fault(&solid), None);
+        assert_eq!(solid.mesh().triangle_count(), 2 * 11 + 2 * 12 + 2);
+    }
 }
 
 #[test]

@@ -76,6 +76,25 @@ pub fn turned(degrees: [f64; 3], tree: Tree) -> Tree {
     Tree::Placed(Placement::new(linear, DVec3::ZERO), Box::new(tree))
 }
 
+/// A tree all of whose parts are turned one by one, as a modeller turns them.
+pub fn each_turned(degrees: [f64; 3], tree: &Tree) -> Tree {
+    let all = |parts: &[Tree]| parts.iter().map(|part| each_turned(degrees, part)).collect();
+    match tree {
+        Tree::Union(parts) => Tree::Union(all(parts)),
+        Tree::Difference(parts) => Tree::Difference(all(parts)),
+        Tree::Intersection(parts) => Tree::Intersection(all(parts)),
+        part => {
+            let Tree::Placed(turn, part) = turned(degrees, part.clone()) else {
+                return part.clone();
+            };
+            match *part {
+                Tree::Placed(inner, part) => Tree::Placed(turn.after(&inner), part),
+                part => Tree::Placed(turn, Box::new(part)),
+            }
+        }
+    }
+}
+
 /// A tree moved.
 pub fn moved(by: [f64; 3], tree: Tree) -> Tree {
     Tree::Placed(Placement::translation(DVec3::from_array(by)), Box::new(tree))

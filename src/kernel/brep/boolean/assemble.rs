@@ -1,22 +1,26 @@
 //! From outlines to the mesh of the result: vertices are rounded here, once.
 
 use glam::DVec3;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::{
+    super::crossing::{Tangle, tangle},
     boundary::Boundary,
     carry::Carried,
     cells::Complex,
     classify::Sides,
     facet::Facets,
     frame::Plan,
-    origins::{Key, Labels},
-    outline::{Loop, Outline},
+    origins::{Flat, Key, Labels},
+    outline::{Loop, Once, Outline},
     patch::{Borders, Patches},
     place::Places,
     space::{NONE, Space},
 };
-use crate::{geom::PolyMesh, kernel::brep::polyhedron::Polyhedron};
+use crate::{
+    geom::{PolyMesh, triangulate::triangulate_face},
+    kernel::brep::Polyhedron,
+};
 
 /// What the result is assembled from.
 pub(super) struct Assembly<'a> {
@@ -30,44 +34,111 @@ pub(super) struct Assembly<'a> {
     pub sides: &'a Sides,
 }
 
+/// Results of so many faces are tested wherever they are not exactly what was arranged, larger ones only where
+/// vertices are rounded: a corner that goes back from the lattice to its place hardly ever passes anything.
+const SMALL: usize = 2000;
+
+/// How often a result that crosses itself is mended.
+const ROUNDS: usize = 4;
+
+/// What is taken as it is on the lattice because the result crosses itself there otherwise.
+#[derive(Default)]
+struct Strict {
+    /// Cells that are merged with no other.
+    cells: FxHashSet<u32>,
+    /// Points that do not go back to the corner they come from.
+    points: FxHashSet<u32>,
+}
+
+/// A mesh and what its parts come from.
+#[derive(Default)]
+struct Draft {
+    mesh: PolyMesh,
+    /// The polygon of each face; those of patches follow and have none.
+    polygons: Vec<u32>,
+    /// The point of each vertex, so far as it has one.
+    points: Vec<u32>,
+    /// The number of vertices that are not carried over.
+    own_points: u32,
+    /// The faces that may cross others: with a vertex that is no lattice point, bent, or moved.
+    suspects: Vec<u32>,
+}
+
 impl Assembly<'_> {
-    /// The result, placed; `None` if it is not closed, which means that the operands contradict
-    /// themselves.
-    pub fn solid(&self) -> Option<Polyhedron> {
-        let mut labels = Labels::new(self.plan, self.facets);
+    /// The result, placed, and a place in mm where it crosses itself if that could not be mended; `None`
+    /// if it is not closed.
+    ///
+    /// What is merged, moved back to its corners and rounded may cross what was apart by less. There
+    /// cells stay pieces and points stay on the lattice.
+    pub fn solid(&self) -> Option<(Polyhedron, Option<DVec3>)> {
+        let mut strict = Strict::default();
+        let mut rounds = 0..ROUNDS;
+        loop {
+            let draft = self.draft(&strict)?;
+            let tangle = tangle(&draft.mesh, draft.polygons.len(), &draft.suspects);
+            match (tangle, rounds.next()) {
+                (Some(tangle), Some(_)) => self.hold_apart(&tangle, &draft, &mut strict),
+                (tangle, _) => {
+                    let (faces, points) = (draft.polygons.len(), draft.own_points);
+                    let solid = Polyhedron::seamed(draft.mesh, faces, points).ok()?;
+                    return Some((solid, tangle.map(|t| t.place)));
+                }
+            }
+        }
+    }
+
+    /// Takes what is around crossing faces as it is on the lattice.
+    fn hold_apart(&self, tangle: &Tangle, draft: &Draft, strict: &mut Strict) {
+        let mut polygons: FxHashSet<u32> = FxHashSet::default();
+        for &face in tangle.faces.iter().flatten() {
+            polygons.extend(draft.polygons.get(face as usize));
+            let corners = draft.mesh.face(face as usize).loops().flatten();
+            strict.points.extend(corners.filter_map(|&c| draft.points.get(c as usize)));
+        }
+        let mut labels = Labels::new(self.plan, self.facets).holding_apart(strict.cells.clone());
+        let boundary = Boundary::of(self.complex, self.sides, &mut labels);
+        let halves = self.complex.halves.iter().zip(&boundary.polygon);
+        let cells =
+            halves.filter(|(_, polygon)| polygons.contains(polygon)).map(|(half, _)| half.cell);
+        strict.cells.extend(cells);
+    }
+
+    /// The mesh of the result, placed; `None` if it is open.
+    fn draft(&self, strict: &Strict) -> Option<Draft> {
+        let mut labels = Labels::new(self.plan, self.facets).holding_apart(strict.cells.clone());
         let boundary = Boundary::of(self.complex, self.sides, &mut labels);
         if boundary.is_open(self.borders) {
             return None;
         }
-        let outline = Outline::of(&boundary, self.borders, self.complex);
+        let outline = Outline::of(&boundary, self.borders, self.complex, Once::Vertex);
         let dropped = outline.dropped((&boundary, self.borders), self.complex, self.space);
-        let mut mesh = PolyMesh::default();
-        let (mut loops, standing) = self.corners(&boundary, &outline, &dropped, &mut mesh);
+        let mut draft = Draft::default();
+        let shape = (&boundary, &outline, &dropped[..]);
+        let (mut loops, standing) = self.corners(shape, strict, &mut draft);
         let carried = Carried::new(self, &boundary.up, &standing);
         if boundary.touches {
-            part_equal_edges(&mut loops, &mut mesh);
+            part_equal_edges(&mut loops, &mut draft.mesh);
         }
         let carried_origins = carried.origins(&mut labels);
         for origin in labels.origins {
-            mesh.add_origin(origin);
+            draft.mesh.add_origin(origin);
         }
-        self.add_faces(&boundary, &outline, &loops, &mut mesh);
-        let (faces, points) = (mesh.face_count(), mesh.points.len() as u32);
-        carried.add_faces(&carried_origins, &mut mesh);
+        self.add_faces(&boundary, &outline, &loops, &mut draft);
+        draft.own_points = draft.mesh.points.len() as u32;
+        carried.add_faces(&carried_origins, &mut draft.mesh);
         if self.plan.frame.mirrors() {
-            mesh.flip();
+            draft.mesh.flip();
         }
-        Polyhedron::seamed(mesh, faces, points).ok()
+        Some(draft)
     }
 
     /// Every loop as mesh points, and for every edge a number that both its sides share; and a mesh
     /// point for each point.
     fn corners(
         &self,
-        boundary: &Boundary,
-        outline: &Outline,
-        dropped: &[bool],
-        mesh: &mut PolyMesh,
+        (boundary, outline, dropped): (&Boundary, &Outline, &[bool]),
+        strict: &Strict,
+        draft: &mut Draft,
     ) -> (Vec<Vec<(u32, u32)>>, Vec<u32>) {
         let mut standing = vec![NONE; self.space.point_count()];
         let mut numbers = vec![NONE; outline.vertex.len()];
@@ -82,10 +153,14 @@ impl Assembly<'_> {
                 let half = halves[i];
                 let number = &mut numbers[vertex(half)];
                 if *number == NONE {
-                    *number = mesh.points.len() as u32;
+                    *number = draft.points.len() as u32;
                     let point = boundary.origin[half as usize];
                     standing[point as usize] = *number;
-                    mesh.points.push(self.places.of(point, self.space));
+                    draft.points.push(point);
+                    draft.mesh.points.push(match strict.points.contains(&point) {
+                        true => self.places.on_lattice(point, self.space),
+                        false => self.places.of(point, self.space),
+                    });
                 }
                 let next = kept[(k + 1) % kept.len()];
                 let last = halves[(next + halves.len() - 1) % halves.len()];
@@ -101,8 +176,16 @@ impl Assembly<'_> {
         boundary: &Boundary,
         outline: &Outline,
         loops: &[Vec<(u32, u32)>],
-        mesh: &mut PolyMesh,
+        draft: &mut Draft,
     ) {
+        let mesh = &mut draft.mesh;
+        let (points, space) = (&draft.points, self.space);
+        let any = |corners: &[Vec<u32>], test: &dyn Fn(u32) -> bool| {
+            corners.iter().flatten().any(|&c| points.get(c as usize).is_none_or(|&p| test(p)))
+        };
+        let is_rounded = |point: u32| !space.is_on_lattice(point);
+        let is_moved = |point: u32| self.places.is_moved(point, space);
+        let mut doubtful = vec![];
         let mut planes: FxHashMap<_, u32> = FxHashMap::default();
         let mut start = 0;
         for run in outline.loops.chunk_by(|a, b| a.polygon == b.polygon) {
@@ -116,10 +199,43 @@ impl Assembly<'_> {
                 let outer = outer_loop(run, outline, boundary, self.space);
                 corners.swap(0, outer);
             }
-            mesh.push_face(&corners, plane, key.origin);
+            let first = mesh.face_count();
+            if is_pinched(&corners) {
+                add_triangles(&corners, plane, key.origin, mesh);
+            } else {
+                mesh.push_face(&corners, plane, key.origin);
+            }
+            draft.polygons.resize(mesh.face_count(), run[0].polygon);
+            let faces = first as u32..mesh.face_count() as u32;
+            if any(&corners, &is_rounded) {
+                draft.suspects.extend(faces);
+            } else if matches!(key.plane().0, Flat::Source(..)) || any(&corners, &is_moved) {
+                doubtful.extend(faces);
+            }
             start += run.len();
         }
+        if mesh.face_count() <= SMALL {
+            draft.suspects.extend(doubtful);
+        }
     }
+}
+
+/// Whether the loops of a polygon have a vertex in common.
+fn is_pinched(loops: &[Vec<u32>]) -> bool {
+    if loops.len() == 1 {
+        return false;
+    }
+    let mut corners = loops.concat();
+    corners.sort_unstable();
+    corners.windows(2).any(|pair| pair[0] == pair[1])
+}
+
+/// Adds a pinched polygon as triangles: a face of a mesh is around a corner but once.
+fn add_triangles(loops: &[Vec<u32>], plane: u32, origin: u32, mesh: &mut PolyMesh) {
+    let loops: Vec<&[u32]> = loops.iter().map(Vec::as_slice).collect();
+    let mut triangles = vec![];
+    triangulate_face(&mesh.points, &loops, &mut triangles);
+    triangles.iter().for_each(|corners| mesh.push_face(&[corners], plane, origin));
 }
 
 /// The loop that the others are holes in: the one with the greatest area along the polygon's normal.

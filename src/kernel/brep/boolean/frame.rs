@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 
-use super::{BooleanError, Tree, evaluate_operation, expression::Expression};
+use super::{BooleanError, Evaluated, Tree, evaluate_operation, expression::Expression};
 use crate::{geom::Placement, kernel::brep::Polyhedron};
 
 /// How far a relative linear part, a product of a matrix and an inverse, may be from a signed axis
@@ -36,8 +36,33 @@ pub(super) struct Plan {
     pub expression: Expression,
     /// From the frame of the operation to where the result stands.
     pub frame: Placement,
-    /// Largest movement of a corner in operations evaluated on the way, mm.
+    /// Largest movement of a corner in operations evaluated on the way, mm where the result stands.
     pub snap: f64,
+}
+
+impl Plan {
+    /// The result and how far corners were moved, given in the frame of the operation.
+    pub fn evaluated(
+        &self,
+        solid: Polyhedron,
+        crossing: Option<DVec3>,
+        (snap, step): (f64, f64),
+    ) -> Evaluated {
+        let stretch = stretch(&self.frame);
+        Evaluated { solid, snap: self.snap.max(snap * stretch), step: step * stretch, crossing }
+    }
+}
+
+/// How much longer a placement makes the axes.
+fn stretch(placement: &Placement) -> f64 {
+    let linear = placement.linear();
+    [linear.x_axis, linear.y_axis, linear.z_axis].map(DVec3::length).into_iter().fold(0.0, f64::max)
+}
+
+/// From the frame of an operation to the one it is evaluated in.
+pub(super) fn inverse(tree: &Tree) -> Placement {
+    let common = Placement::new(common_linear(tree), DVec3::ZERO);
+    common.inverse().unwrap_or(Placement::IDENTITY)
 }
 
 /// Flattens an operation node that stands at `outer`.
@@ -113,7 +138,7 @@ impl Walk {
             return deeper(|| self.operation(tree, at));
         }
         let evaluated = deeper(|| evaluate_operation(tree, &Placement::IDENTITY))?;
-        self.snap = self.snap.max(evaluated.snap);
+        self.snap = self.snap.max(evaluated.snap * stretch(&self.outer.after(at)));
         Ok(self.leaf(Arc::new(evaluated.solid), at))
     }
 

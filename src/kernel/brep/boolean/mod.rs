@@ -2,6 +2,8 @@
 //!
 //! A whole tree of unions, differences and intersections is evaluated in one arrangement:
 //!
+//! 0. [`clusters`] divides an operation into groups of leaves that do not touch: each is evaluated
+//!    on its own.
 //! 1. [`frame`] moves placements out of the operation and flattens it: leaves, one expression.
 //! 2. [`lattice`] chooses a decimal lattice; [`facet`] snaps the faces of all leaves to it, and
 //!    [`place`] remembers where corners come from. Faces of large leaves that no other leaf touches
@@ -31,6 +33,7 @@
 //! What is approximate: corners are moved to the lattice on the way in, by at most half a step per
 //! axis ([`Evaluated::snap`]; coordinates written in decimals usually not at all), and new vertices
 //! are rounded on the way out. A corner that no cut touches comes out with the coordinates it had.
+//! Faces that this could make cross others are tested, and put together anew where they do.
 //!
 //! # Sources
 //! Winding vectors and an integer lattice: Trettner, Nehring-Wirxel and Kobbelt, *EMBER: exact mesh
@@ -48,6 +51,7 @@ mod boundary;
 mod carry;
 mod cells;
 mod classify;
+mod clusters;
 mod expression;
 mod facet;
 mod frame;
@@ -74,6 +78,8 @@ mod union_find;
 
 use std::sync::Arc;
 
+use glam::DVec3;
+use rayon::prelude::*;
 use thiserror::Error;
 
 use self::{
@@ -89,7 +95,7 @@ use self::{
     space::Space,
 };
 use super::polyhedron::Polyhedron;
-use crate::geom::Placement;
+use crate::geom::{Placement, PolyMesh};
 
 /// A construction tree of solids.
 #[derive(Clone, Debug)]
@@ -111,11 +117,15 @@ pub enum Tree {
 pub struct Evaluated {
     /// The solid.
     pub solid: Polyhedron,
-    /// The largest distance that a corner was moved to a lattice point, in mm of the frame of the
-    /// operation (and of those nested in it). Corners that no cut touches do not move at all.
+    /// The largest distance that a corner was moved to a lattice point, mm. Corners that no cut touches
+    /// do not move at all.
     pub snap: f64,
-    /// The step of the lattice of the outermost operation, in mm of its frame; 0 for a leaf alone.
+    /// The step of the lattice of the outermost operation, the largest if groups of it have lattices of
+    /// their own, mm; 0 for a leaf alone.
     pub step: f64,
+    /// A place in mm where the result crosses itself because features finer than the lattice could not
+    /// be rounded apart; `None` nearly always.
+    pub crossing: Option<DVec3>,
 }
 
 /// Why a set operation has no result.
@@ -159,14 +169,19 @@ pub const CORNERS: usize = 1 << 28;
 /// # Ok::<(), katachi::kernel::brep::boolean::BooleanError>(())
 /// ```
 pub fn evaluate(tree: &Tree) -> Result<Evaluated, BooleanError> {
-    let (mut placement, mut inner) = (Placement::IDENTITY, tree);
+    evaluate_at(tree, &Placement::IDENTITY)
+}
+
+/// Evaluates a tree whose result stands at `outer`.
+fn evaluate_at(tree: &Tree, outer: &Placement) -> Result<Evaluated, BooleanError> {
+    let (mut placement, mut inner) = (*outer, tree);
     while let Tree::Placed(outer, child) = inner {
         placement = placement.after(outer);
         inner = child;
     }
     match inner {
         Tree::Leaf(solid) => {
-            Ok(Evaluated { solid: solid.placed(&placement), snap: 0.0, step: 0.0 })
+            Ok(Evaluated { solid: solid.placed(&placement), snap: 0.0, step: 0.0, crossing: None })
         }
         operation => evaluate_operation(operation, &placement),
     }
@@ -184,12 +199,30 @@ pub fn self_union(solid: &Polyhedron) -> Result<Evaluated, BooleanError> {
 
 /// Evaluates a set operation whose result stands at `outer`.
 fn evaluate_operation(tree: &Tree, outer: &Placement) -> Result<Evaluated, BooleanError> {
+    if let Some(groups) = clusters::apart(tree, &frame::inverse(tree)) {
+        return side_by_side(&groups, outer);
+    }
     let plan = frame::plan(tree, outer)?;
     if let Some(evaluated) = arranged(&plan, true, true)? {
         return Ok(evaluated);
     }
     // A leaf that crosses itself, as it came or after snapping: compare all facets with all.
     arranged(&plan, false, false)?.ok_or(BooleanError::NotClosed)
+}
+
+/// Evaluates trees that do not touch, each for itself.
+fn side_by_side(trees: &[Tree], outer: &Placement) -> Result<Evaluated, BooleanError> {
+    let parts = trees.par_iter().map(|tree| frame::deeper(|| evaluate_at(tree, outer)));
+    let parts: Vec<Evaluated> = parts.collect::<Result<_, _>>()?;
+    let mut all = Evaluated { solid: Polyhedron::empty(), snap: 0.0, step: 0.0, crossing: None };
+    let mut mesh = PolyMesh::default();
+    for part in &parts {
+        mesh.append(part.solid.mesh());
+        (all.snap, all.step) = (all.snap.max(part.snap), all.step.max(part.step));
+        all.crossing = all.crossing.or(part.crossing);
+    }
+    all.solid = Polyhedron::trusted(mesh);
+    Ok(all)
 }
 
 /// Evaluates a plan; `None` if its leaves contradict themselves. Faces may rest in patches only in
@@ -209,14 +242,10 @@ fn arranged(plan: &Plan, trusted: bool, resting: bool) -> Result<Option<Evaluate
         return arranged(plan, trusted, false);
     }
     if trusted
-        && let Some(solid) =
+        && let Some((solid, crossing)) =
             staged::evaluate(plan, &lattice, (&facets, &sources, &patches), &mut space)
     {
-        return Ok(Some(Evaluated {
-            solid,
-            snap: plan.snap.max(sources.snap),
-            step: lattice.step(),
-        }));
+        return Ok(Some(plan.evaluated(solid, crossing, (sources.snap, lattice.step()))));
     }
     let pairs = intersect::candidates(&facets, trusted);
     let resting = patches.list.iter().map(|p| facets.of_owner(p.leaf as usize).start as u32);
@@ -234,6 +263,6 @@ fn arranged(plan: &Plan, trusted: bool, resting: bool) -> Result<Option<Evaluate
     let (facets, space, complex, sides) = (&facets, &space, &complex, &sides);
     let (patches, borders, places) = (&patches, &borders, &places);
     let assembly = Assembly { plan, patches, borders, places, facets, space, complex, sides };
-    let Some(solid) = assembly.solid() else { return Ok(None) };
-    Ok(Some(Evaluated { solid, snap: plan.snap.max(sources.snap), step: lattice.step() }))
+    let Some((solid, crossing)) = assembly.solid() else { return Ok(None) };
+    Ok(Some(plan.evaluated(solid, crossing, (sources.snap, lattice.step()))))
 }

@@ -1,6 +1,6 @@
 //! What a piece of boundary is made of: the plane it lies in and the source it came from.
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::{
     cells::Complex,
@@ -18,6 +18,8 @@ pub(super) enum Flat {
     /// The plane of a source face, by leaf and number there: snapping has bent it, or it was never
     /// needed.
     Source(u32, u32),
+    /// That of a cell, by its number: a piece for itself.
+    Piece(u32),
 }
 
 /// The source of a piece.
@@ -53,6 +55,8 @@ pub(super) struct Labels<'a> {
     plan: &'a Plan,
     facets: &'a Facets,
     exact: bool,
+    /// Cells that stay pieces for themselves.
+    apart: FxHashSet<u32>,
     /// The exact plane of a source plane, and whether it faces against it.
     planes: FxHashMap<(u32, u32), (u32, bool)>,
     numbers: FxHashMap<(u32, u32), u32>,
@@ -66,6 +70,7 @@ impl<'a> Labels<'a> {
             plan,
             facets,
             exact: false,
+            apart: FxHashSet::default(),
             planes: FxHashMap::default(),
             numbers: FxHashMap::default(),
             origins: vec![],
@@ -88,7 +93,13 @@ impl<'a> Labels<'a> {
     /// must be known.
     pub fn exact(plan: &'a Plan, facets: &'a Facets) -> Labels<'a> {
         let (planes, numbers) = (FxHashMap::default(), FxHashMap::default());
-        Labels { plan, facets, exact: true, planes, numbers, origins: vec![] }
+        let apart = FxHashSet::default();
+        Labels { plan, facets, exact: true, apart, planes, numbers, origins: vec![] }
+    }
+
+    /// The same labels, but some cells are merged with no other.
+    pub fn holding_apart(self, apart: FxHashSet<u32>) -> Labels<'a> {
+        Labels { apart, ..self }
     }
 
     /// The key of a cell whose outside is above (`up`) or below.
@@ -105,6 +116,7 @@ impl<'a> Labels<'a> {
                 (Flat::Source(leaf, plane), up == ((count > 0) != flipped))
             }
         };
+        let flat = if self.apart.contains(&cell) { Flat::Piece(cell) } else { flat };
         let origin = self.origin(leaf, face);
         let patch = match self.origins[origin as usize].surface {
             Surface::Plane => Patch::Plane(origin),

@@ -1,7 +1,7 @@
 //! The outlines of merged polygons: loops, the vertices where they meet, and which of those stay.
 //!
 //! Around a point every fan of linked polygons gets a vertex of its own, so solids that touch in a
-//! point come apart. A vertex where only two polygons meet, along one straight line, is dropped,
+//! point come apart. A polygon that touches itself in a point is in the fan there twice. A vertex where only two polygons meet, along one straight line, is dropped,
 //! unless the result touches itself there: a result that is used again shares its points where it
 //! touches itself.
 
@@ -16,6 +16,15 @@ use super::{
     union_find::Sets,
 };
 use crate::geom::predicates::{cross, minus};
+
+/// What a loop meets only once: polygons whose outlines meet it again are cut there.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(super) enum Once {
+    /// Every point.
+    Point,
+    /// Every vertex; vertices of several fans may stand in one point.
+    Vertex,
+}
 
 /// A loop around a merged polygon.
 pub(super) struct Loop {
@@ -44,16 +53,16 @@ impl Outline {
     /// Traces the outlines.
     ///
     /// `borders` are the points at which patches border: only one fan is there, and it stays.
-    pub fn of(boundary: &Boundary, borders: &Borders, complex: &Complex) -> Outline {
+    pub fn of(boundary: &Boundary, borders: &Borders, complex: &Complex, once: Once) -> Outline {
         let count = boundary.twin.len();
-        let (loops, halves) = loops(boundary, complex);
-        let mut outline = Outline {
-            loops,
-            halves,
-            next: vec![NONE; count],
-            before: vec![NONE; count],
-            vertex: vec![NONE; count],
+        let walks = Walks::of(boundary);
+        let vertex = walks.vertices(boundary, borders, complex);
+        let (loops, halves) = match once {
+            Once::Point => walks.cut(&boundary.at, complex.point_count()),
+            Once::Vertex => walks.cut(&vertex, count),
         };
+        let [next, before] = [0; 2].map(|_| vec![NONE; count]);
+        let mut outline = Outline { loops, halves, next, before, vertex };
         for edge in &outline.loops {
             let halves = &outline.halves[edge.from as usize..edge.to as usize];
             let mut before = halves[halves.len() - 1];
@@ -62,20 +71,6 @@ impl Outline {
                 outline.before[half as usize] = before;
                 before = half;
             }
-        }
-        let mut sets = Sets::new(count);
-        let mut leaving = vec![NONE; complex.point_count()];
-        for half in boundary.outer() {
-            if borders.patch(boundary.origin[half as usize]).is_some() {
-                let slot = &mut leaving[boundary.at[half as usize] as usize];
-                *slot = half.min(*slot);
-                sets.join(half, *slot);
-            } else {
-                sets.join(half, outline.next[boundary.twin[half as usize] as usize]);
-            }
-        }
-        for half in boundary.outer() {
-            outline.vertex[half as usize] = sets.find(half);
         }
         outline
     }
@@ -140,44 +135,92 @@ impl Outline {
     }
 }
 
-/// The loops around all merged polygons, without a point met twice, and their half-edges.
-fn loops(boundary: &Boundary, complex: &Complex) -> (Vec<Loop>, Vec<u32>) {
-    let mut done = vec![false; boundary.twin.len()];
-    // The walk that met each point last.
-    let mut met = vec![NONE; complex.point_count()];
-    let (mut loops, mut halves) = (vec![], Vec::with_capacity(boundary.twin.len()));
-    for start in boundary.outer() {
-        if done[start as usize] {
-            continue;
-        }
-        let (from, mut half, mut is_simple) = (halves.len(), start, true);
-        while !done[half as usize] {
-            done[half as usize] = true;
-            halves.push(half);
-            let met = &mut met[boundary.at[half as usize] as usize];
-            is_simple &= *met != start;
-            *met = start;
-            half = boundary.next[half as usize];
-            while boundary.is_inner(half) {
-                half = boundary.next[boundary.twin[half as usize] as usize];
-            }
-        }
-        let polygon = boundary.polygon[start as usize];
-        if is_simple {
-            loops.push(Loop { polygon, from: from as u32, to: halves.len() as u32 });
-            continue;
-        }
-        for part in simple(halves.split_off(from), &boundary.at) {
-            let from = halves.len() as u32;
-            halves.extend(part);
-            loops.push(Loop { polygon, from, to: halves.len() as u32 });
-        }
-    }
-    loops.sort_by_key(|l| l.polygon);
-    (loops, halves)
+/// The way around every merged polygon, the polygon on its left.
+struct Walks {
+    list: Vec<Loop>,
+    halves: Vec<u32>,
 }
 
-/// Cuts a walk that meets points more than once into loops that do not.
+impl Walks {
+    fn of(boundary: &Boundary) -> Walks {
+        let mut done = vec![false; boundary.twin.len()];
+        let (mut list, mut halves) = (vec![], Vec::with_capacity(boundary.twin.len()));
+        for start in boundary.outer() {
+            if done[start as usize] {
+                continue;
+            }
+            let (from, mut half) = (halves.len() as u32, start);
+            while !done[half as usize] {
+                done[half as usize] = true;
+                halves.push(half);
+                half = boundary.next[half as usize];
+                while boundary.is_inner(half) {
+                    half = boundary.next[boundary.twin[half as usize] as usize];
+                }
+            }
+            let polygon = boundary.polygon[start as usize];
+            list.push(Loop { polygon, from, to: halves.len() as u32 });
+        }
+        Walks { list, halves }
+    }
+
+    fn halves(&self, walk: &Loop) -> &[u32] {
+        &self.halves[walk.from as usize..walk.to as usize]
+    }
+
+    /// The vertex at the start of each half-edge: one for every fan of polygons, known by one of the
+    /// half-edges that leave it.
+    fn vertices(&self, boundary: &Boundary, borders: &Borders, complex: &Complex) -> Vec<u32> {
+        let mut next = vec![NONE; boundary.twin.len()];
+        for halves in self.list.iter().map(|walk| self.halves(walk)) {
+            let mut before = halves[halves.len() - 1];
+            for &half in halves {
+                next[before as usize] = half;
+                before = half;
+            }
+        }
+        let mut sets = Sets::new(next.len());
+        let mut leaving = vec![NONE; complex.point_count()];
+        for half in boundary.outer() {
+            if borders.patch(boundary.origin[half as usize]).is_some() {
+                let first = &mut leaving[boundary.at[half as usize] as usize];
+                *first = half.min(*first);
+                sets.join(half, *first);
+            } else {
+                sets.join(half, next[boundary.twin[half as usize] as usize]);
+            }
+        }
+        let mut vertex = vec![NONE; next.len()];
+        boundary.outer().for_each(|half| vertex[half as usize] = sets.find(half));
+        vertex
+    }
+
+    /// Loops that meet nothing twice, and their half-edges; `at` says what each half-edge meets.
+    fn cut(&self, at: &[u32], count: usize) -> (Vec<Loop>, Vec<u32>) {
+        // The walk that met each thing last.
+        let mut met = vec![NONE; count];
+        let (mut loops, mut all) = (vec![], Vec::with_capacity(self.halves.len()));
+        for (number, walk) in (0u32..).zip(&self.list) {
+            let halves = self.halves(walk);
+            let mut is_simple = true;
+            for &half in halves {
+                let met = &mut met[at[half as usize] as usize];
+                is_simple &= *met != number;
+                *met = number;
+            }
+            let parts = if is_simple { vec![halves.to_vec()] } else { simple(halves.to_vec(), at) };
+            for part in parts {
+                let from = all.len() as u32;
+                all.extend(part);
+                loops.push(Loop { polygon: walk.polygon, from, to: all.len() as u32 });
+            }
+        }
+        loops.sort_by_key(|l| l.polygon);
+        (loops, all)
+    }
+}
+
+/// Cuts a walk that meets something more than once into loops that do not.
 fn simple(walk: Vec<u32>, at: &[u32]) -> Vec<Vec<u32>> {
     let (mut loops, mut open) = (vec![], Vec::<u32>::new());
     let mut place: FxHashMap<u32, usize> = FxHashMap::default();
@@ -222,7 +265,8 @@ impl Straight<'_> {
             self.boundary.keys[cell as usize].map(|k| k.flat)
         };
         let (mine, other) = (flat(half), flat(twins[0]));
-        if mine == other {
+        let is_piece = |f: Option<Flat>| matches!(f, Some(Flat::Piece(_)));
+        if mine == other || is_piece(mine) || is_piece(other) {
             return self.exactly(half, before, twins);
         }
         let exact = |f: Option<Flat>| matches!(f, Some(Flat::Exact(_)));

@@ -90,6 +90,20 @@ impl<'a> Places<'a> {
         &self.sources.list
     }
 
+    /// Where a point stands on the lattice, however that moves a corner.
+    pub fn on_lattice(&self, point: u32, space: &Space) -> DVec3 {
+        self.plan.frame.point(self.lattice.place(space.near(point)))
+    }
+
+    /// Whether a point is a corner that is not at its place on the lattice.
+    pub fn is_moved(&self, point: u32, space: &Space) -> bool {
+        self.sources.list.get(point as usize).is_some_and(|&(leaf, corner)| {
+            let leaf = &self.plan.leaves[leaf as usize];
+            let there = leaf.local.point(leaf.solid.mesh().points[corner as usize]);
+            there != self.lattice.place(space.near(point))
+        })
+    }
+
     /// Where a point stands in the result. A corner of a leaf stands where the leaf's placement puts
     /// it, untouched by the lattice.
     pub fn of(&self, point: u32, space: &Space) -> DVec3 {

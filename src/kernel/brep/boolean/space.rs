@@ -108,6 +108,11 @@ impl Space {
         (point.planes[0] == NONE).then(|| point.near.map(|c| c as i64))
     }
 
+    /// Whether all coordinates of a point are whole, however it was found.
+    pub fn is_on_lattice(&self, point: u32) -> bool {
+        self.near(point).into_iter().all(is_whole)
+    }
+
     /// The coordinates of a point in steps, with an error far below one step; whole numbers exactly.
     pub fn near(&self, point: u32) -> [f64; 3] {
         self.points[point as usize].near

@@ -14,7 +14,7 @@ use super::{
     frame::Plan,
     locate,
     origins::{Flat, Labels},
-    outline::Outline,
+    outline::{Once, Outline},
     patch::Borders,
     region::Regions,
     rest::{Rest, Resting},
@@ -129,7 +129,7 @@ fn add_cells(
     if boundary.is_open(borders) {
         return None;
     }
-    let outline = Outline::of(&boundary, borders, complex);
+    let outline = Outline::of(&boundary, borders, complex, Once::Point);
     let dropped = outline.dropped((&boundary, borders), complex, space);
     let mut corners: Vec<(u32, u32)> = vec![];
     for run in outline.loops.chunk_by(|a, b| a.polygon == b.polygon) {
@@ -153,7 +153,7 @@ fn add_cells(
         let (flat, up) = key.plane();
         let plane = match flat {
             Flat::Exact(plane) => Some((plane, !up)),
-            Flat::Source(..) => None,
+            Flat::Source(..) | Flat::Piece(_) => None,
         };
         let source = source(run[0].polygon, &boundary, complex, facets);
         result.push(source, run.len(), plane, space);

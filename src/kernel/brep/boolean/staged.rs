@@ -15,14 +15,15 @@ use super::{
     union_find::Sets,
 };
 use crate::kernel::brep::Polyhedron;
+use glam::DVec3;
 
-/// Evaluates an operation in stages; `None` where one stage is as good, or where stages fail.
+/// Evaluates an operation in stages ([`Assembly::solid`]); `None` where one stage is as good, or where stages fail.
 pub(super) fn evaluate(
     plan: &Plan,
     lattice: &Lattice,
     (facets, sources, patches): (&Facets, &Sources, &Patches),
     space: &mut Space,
-) -> Option<Polyhedron> {
+) -> Option<(Polyhedron, Option<DVec3>)> {
     if plan.leaves.len() < 3 || facets.has_collapsed {
         return None;
     }
@@ -62,14 +63,14 @@ fn is_one_shell(facets: &Facets, space: &Space) -> bool {
     corners.all(|&corner| Some(sets.find(corner)) == first)
 }
 
-/// The solid that a closed surface bounds, its vertices rounded.
+/// The solid that a closed surface bounds, its vertices rounded ([`Assembly::solid`]).
 fn assembled(
     facets: &mut Facets,
     plan: &Plan,
     places: &Places<'_>,
     patches: &Patches,
     space: &mut Space,
-) -> Option<Polyhedron> {
+) -> Option<(Polyhedron, Option<DVec3>)> {
     let mut complex = Complex::default();
     (0..facets.list().len() as u32).for_each(|facet| complex.add_whole(facet, facets));
     complex.add_patches(std::iter::empty());
