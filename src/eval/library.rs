@@ -21,6 +21,7 @@ const PRELUDE: &[(&str, &str)] = &[
     ("std/profiles", include_str!("../../stdlib/profiles.kata")),
     ("std/solids", include_str!("../../stdlib/solids.kata")),
     ("std/strings", include_str!("../../stdlib/strings.kata")),
+    ("std/surfaces", include_str!("../../stdlib/surfaces.kata")),
     ("std/testing", include_str!("../../stdlib/testing.kata")),
     ("std/views", include_str!("../../stdlib/views.kata")),
 ];

@@ -48,6 +48,10 @@ pub enum Type {
     Optional(Box<Type>),
     /// A curve.
     Curve,
+    /// A surface.
+    Surface,
+    /// What can be moved: a solid, profile, curve or surface.
+    Figure,
     /// A drawing.
     Drawing,
     /// A page.
@@ -60,8 +64,8 @@ pub enum Type {
 
 const NAMES: &[&str] = &[
     "Any", "Number", "Length", "Angle", "Area", "Volume", "Quantity", "Count", "Bool", "String",
-    "List", "Record", "Range", "Function", "Solid", "Profile", "Shape", "Curve", "Drawing", "Page",
-    "Optional", "Point", "Vector",
+    "List", "Record", "Range", "Function", "Solid", "Profile", "Shape", "Curve", "Surface",
+    "Figure", "Drawing", "Page", "Optional", "Point", "Vector",
 ];
 
 /// Why a value does not fit.
@@ -94,6 +98,8 @@ impl Type {
             "Profile" => Type::Profile,
             "Shape" => Type::Shape,
             "Curve" => Type::Curve,
+            "Surface" => Type::Surface,
+            "Figure" => Type::Figure,
             "Drawing" => Type::Drawing,
             "Page" => Type::Page,
             "Point" => Type::Point,
@@ -132,6 +138,8 @@ impl Type {
             | (Type::Range, Value::Range(_))
             | (Type::Function, Value::Function(_))
             | (Type::Curve, Value::Curve(_))
+            | (Type::Surface, Value::Surface(_))
+            | (Type::Figure, Value::Curve(_) | Value::Surface(_))
             | (Type::Drawing, Value::Drawing(_))
             | (Type::Page, Value::Page(_))
             | (Type::Optional(_), Value::Symbol(Symbol::None)) => Ok(()),
@@ -147,7 +155,9 @@ impl Type {
                 inner.check(graph, &range.element(0))
             }
             (Type::List(_), Value::Range(_)) => Ok(()),
-            (Type::Solid | Type::Profile | Type::Shape, value) => self.check_shape(graph, value),
+            (Type::Solid | Type::Profile | Type::Shape | Type::Figure, value) => {
+                self.check_shape(graph, value)
+            }
             (Type::Point | Type::Vector, Value::List(list)) => self.check_point(list, value),
             _ => Err(self.misfit(value)),
         }
@@ -237,7 +247,7 @@ impl Type {
             _ => false,
         };
         let fits = |id: &ShapeId| match (self, graph.kind(*id)) {
-            (Type::Shape, _) => true,
+            (Type::Shape | Type::Figure, _) => true,
             (Type::Solid, kind) => kind == Kind::Solid,
             (_, kind) => kind == Kind::Profile || is_empty(graph, *id),
         };
@@ -285,7 +295,7 @@ impl Type {
             (Type::List(inner), Value::List(list)) if inner.converts() => {
                 Value::list(list.iter().map(|item| inner.convert(graph, item.clone())).collect())
             }
-            (Type::Solid | Type::Profile | Type::Shape, list @ Value::List(_)) => {
+            (Type::Solid | Type::Profile | Type::Shape | Type::Figure, list @ Value::List(_)) => {
                 self.union(graph, &list)
             }
             (Type::Profile, Value::Solid(id)) if is_empty(graph, id) => {
@@ -306,7 +316,7 @@ impl Type {
     fn converts(&self) -> bool {
         match self {
             Type::Number(needed) => *needed != Dimension::BARE,
-            Type::Solid | Type::Profile | Type::Shape | Type::Point => true,
+            Type::Solid | Type::Profile | Type::Shape | Type::Figure | Type::Point => true,
             Type::List(inner) | Type::Optional(inner) => inner.converts(),
             _ => false,
         }
@@ -350,6 +360,8 @@ impl Type {
             Type::Profile => "a profile".into(),
             Type::Shape => "a solid or a profile".into(),
             Type::Curve => "a curve".into(),
+            Type::Surface => "a surface".into(),
+            Type::Figure => "a solid, profile, curve or surface".into(),
             Type::Drawing => "a drawing".into(),
             Type::Page => "a page".into(),
             Type::Optional(inner) => inner.words(),
@@ -429,6 +441,8 @@ impl fmt::Display for Type {
             Type::Profile => "Profile",
             Type::Shape => "Shape",
             Type::Curve => "Curve",
+            Type::Surface => "Surface",
+            Type::Figure => "Figure",
             Type::Drawing => "Drawing",
             Type::Page => "Page",
             Type::Point => "Point",

@@ -2,6 +2,7 @@
 
 pub mod bounds;
 pub mod bvh;
+pub mod curved_grid;
 pub mod flatten;
 pub mod mesh;
 pub mod nearest;
@@ -11,6 +12,7 @@ pub mod overlay;
 pub mod parity;
 pub mod placement;
 pub mod predicates;
+pub mod raster;
 pub mod region;
 pub mod sides;
 pub mod spherical_projection;
@@ -23,8 +25,10 @@ pub mod trig;
 pub mod wide;
 
 pub use bounds::Bounds;
+pub use curved_grid::{CurvedGrid, GridError};
 pub use mesh::{FaceRef, Origin, PolyMesh};
 pub use placement::Placement;
+pub use raster::Raster;
 pub use region::{Contour, EdgeCurve, Piece, Region};
 pub use stretch::Stretch;
 pub use surface::Surface;

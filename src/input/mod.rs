@@ -6,6 +6,7 @@ mod corners;
 pub mod data;
 pub mod dxf;
 pub mod error;
+pub mod heightmap;
 pub mod obj;
 pub mod off;
 mod order;
@@ -18,6 +19,7 @@ pub mod weld;
 
 pub use data::Data;
 pub use error::{Place, ReadError};
+pub use heightmap::read_heights;
 pub use weld::weld;
 
 use crate::geom::{PolyMesh, Region, Tolerance};

@@ -8,7 +8,7 @@ use super::{Realizer, failure::failure, figure, import, measure};
 use crate::{
     base::{Code, Diagnostic, FileError},
     geom::{
-        Tolerance,
+        Raster, Tolerance,
         spherical_projection::{Projection, solid_angle},
     },
     input,
@@ -105,6 +105,11 @@ impl Geometry for Realizer<'_> {
                 Err(failure(Diagnostic::error(Code::BadFile, words).help(help)))
             }
         }
+    }
+
+    fn heights(&self, file: &str) -> Result<Raster, GeometryError> {
+        let bytes = self.bytes(file)?;
+        input::read_heights(file, &bytes).map_err(|error| import::unreadable(file, &error))
     }
 
     fn read(&self, file: &str) -> Result<Vec<u8>, FileError> {

@@ -19,6 +19,7 @@ use crate::{
         hull::{HullError, hull},
         primitive,
         revolve::{RevolveError, revolve},
+        sheet::{self, SheetError},
     },
     shape::{Kind, Node, ShapeGraph, ShapeId, Stretched},
 };
@@ -47,6 +48,32 @@ impl Coded for RevolveError {
 impl Coded for HullError {
     fn code(&self) -> Code {
         Code::Degenerate
+    }
+}
+
+impl Coded for SheetError {
+    fn code(&self) -> Code {
+        match self {
+            SheetError::Floor { .. } => Code::OutOfRange,
+            SheetError::Defect(_) | SheetError::Rim { .. } => Code::OpenMesh,
+            SheetError::Crossing(_) => Code::SelfCrossing,
+            SheetError::Bend { .. } | SheetError::Flat => Code::Degenerate,
+        }
+    }
+
+    fn help(&self) -> Option<String> {
+        let words = match self {
+            SheetError::Rim { .. } => {
+                "give `.solid(base = ...)` the height of a floor, or use `.thicken(t)`"
+            }
+            SheetError::Bend { .. } => "make the sheet thinner, or the surface smoother",
+            SheetError::Floor { .. } => "move `base` below the surface",
+            SheetError::Flat => {
+                "give `.solid(base = ...)` the height of a floor, or use `.thicken(t)`"
+            }
+            SheetError::Defect(_) | SheetError::Crossing(_) => return None,
+        };
+        Some(words.into())
     }
 }
 
@@ -107,6 +134,8 @@ pub fn make(realizer: &Realizer, graph: &ShapeGraph, unit: Stretched) -> Made<Po
             }
             hull(&points).at(origin)
         }
+        Node::Thickened { surface, t } => sheet::thickened(surface, *t).at(origin),
+        Node::Filled { surface, base } => sheet::filled(surface, *base).at(origin),
         Node::ImportSolid { file, heal } => {
             import::solid(realizer, file, *heal).map_err(|e| figure::placed(e, graph, id))
         }

@@ -5,20 +5,18 @@ use std::{cell::RefCell, sync::Arc};
 
 use glam::{DVec2, DVec3};
 
-use super::{axes, cut};
+use super::{axes, cut, outline::outlines, subjects::Subjects};
 use crate::{
     base::{Code, Diagnostic, Phase, Span, Watch, watch::during},
-    geom::{PolyMesh, Tolerance, trig::cos_deg, trig::sin_deg},
+    geom::{PolyMesh, Tolerance},
     kernel::profile::{self, TextOptions},
     output::{
-        drawing::{
-            self, Body, Camera, CameraError, Drawing, Kind, Scene, Stroke, Window, visible_lines,
-        },
+        drawing::{self, Camera, CameraError, Drawing, Window},
         sheet::{self, Dimension, Figure, Layer, Lettering, Shape, dimension_number},
     },
-    realize::{self, Realizer},
+    realize::{self, Figure as Outline, Realizer},
     shape::{
-        CurveSpec, Node, ShapeGraph, ShapeId, ViewSpec,
+        Node, ShapeGraph, ShapeId, ViewSpec,
         drawing::{DimSpec, Hidden, Measured, Method, PenName, Projection, Side, StyleSpec},
     },
 };
@@ -70,6 +68,9 @@ impl<'a> Drafter<'a> {
 
     fn make(&self, view: &ViewSpec) -> Result<Drawn, Diagnostic> {
         self.realizer.realize(self.graph, &view.shapes);
+        let figure = |&id: &ShapeId| self.realizer.figure(self.graph, id);
+        let figures = view.profiles.iter().map(figure).collect::<Result<Vec<_>, _>>();
+        let figures = figures.map_err(|e| *e.diagnostic)?;
         let mut warnings = vec![];
         let mut solids = vec![];
         for &shape in &view.shapes {
@@ -93,8 +94,10 @@ impl<'a> Drafter<'a> {
                 }
             }
             let meshes: Vec<&PolyMesh> = solids.iter().map(|solid| solid.mesh()).collect();
-            let drawing = self.lines(view, &meshes, &axes, &camera);
-            warnings.extend(blank(&drawing, view, &meshes));
+            let bounds = bounds(view, &meshes, &figures);
+            let subjects = Subjects { solids: meshes, figures, axes, patterns: vec![] };
+            let drawing = subjects.lines(view, &camera, &self.options(view));
+            warnings.extend(blank(&drawing, view, bounds));
             let dimensions = view.dims.iter().map(|dim| dimension(dim, view, &camera));
             let dimensions = dimensions.collect::<Result<_, _>>()?;
             let parts = view.shapes.iter().map(|&shape| name_of(self.graph, shape)).collect();
@@ -103,24 +106,8 @@ impl<'a> Drafter<'a> {
         })
     }
 
-    fn lines(
-        &self,
-        view: &ViewSpec,
-        meshes: &[&PolyMesh],
-        axes: &[[DVec3; 2]],
-        camera: &Camera,
-    ) -> Drawing {
-        let bodies = meshes.iter().zip(0..).map(|(mesh, id)| Body { mesh, id }).collect();
-        let tolerance = self.realizer.tolerance();
-        let mut strokes: Vec<Stroke> = vec![];
-        let mut add = |points: Vec<DVec3>, kind: Kind| {
-            let id = (meshes.len() + strokes.len()) as u32;
-            strokes.push(Stroke { points, kind, id });
-        };
-        for curve in &view.curves {
-            add(points_of(curve, tolerance), Kind::Free);
-        }
-        axes.iter().for_each(|line| add(line.to_vec(), Kind::Centre));
+    /// How the lines of a view are wanted.
+    fn options(&self, view: &ViewSpec) -> drawing::Options {
         let hidden = match view.hidden {
             Hidden::Off => drawing::Hidden::Off,
             Hidden::Dashed => drawing::Hidden::Dashed,
@@ -133,8 +120,7 @@ impl<'a> Drafter<'a> {
         };
         let standard = drawing::Options::default();
         let crease = view.style.crease.unwrap_or(standard.crease);
-        let options = drawing::Options { hidden, method, tolerance, crease };
-        visible_lines(&Scene { bodies, strokes }, camera, &options)
+        drawing::Options { hidden, method, tolerance: self.realizer.tolerance(), crease }
     }
 }
 
@@ -191,32 +177,6 @@ fn side_view(side: Side) -> drawing::View {
     }
 }
 
-/// A curve as points; chords of an arc stay within the tolerance.
-fn points_of(curve: &CurveSpec, tolerance: Tolerance) -> Vec<DVec3> {
-    match curve {
-        CurveSpec::Polyline { points, closed } => {
-            let mut points = points.clone();
-            if *closed {
-                points.push(points[0]);
-            }
-            points
-        }
-        CurveSpec::Arc { center, r, from, to } => {
-            let half = libm::acos((1.0 - tolerance.mm() / r).clamp(0.0, 1.0)).to_degrees();
-            let parts = ((to - from).abs() / (2.0 * half).clamp(FINEST, COARSEST)).ceil();
-            let point = |i: u32| {
-                let angle = from + (to - from) * f64::from(i) / parts;
-                *center + DVec3::new(cos_deg(angle), sin_deg(angle), 0.0) * *r
-            };
-            (0..=parts as u32).map(point).collect()
-        }
-    }
-}
-
-/// Smallest and largest part of an arc, degrees.
-const FINEST: f64 = 0.1;
-const COARSEST: f64 = 15.0;
-
 /// The outermost tag of a shape.
 fn name_of(graph: &ShapeGraph, mut shape: ShapeId) -> Option<Arc<str>> {
     loop {
@@ -228,17 +188,28 @@ fn name_of(graph: &ShapeGraph, mut shape: ShapeId) -> Option<Arc<str>> {
     }
 }
 
+/// The corners of the box around all that a view shows but its curves.
+fn bounds(view: &ViewSpec, meshes: &[&PolyMesh], figures: &[Arc<Outline>]) -> Option<[DVec3; 2]> {
+    let mut corners: Option<[DVec3; 2]> = None;
+    let mut take = |p: DVec3| {
+        corners = Some(corners.map_or([p, p], |[min, max]| [min.min(p), max.max(p)]));
+    };
+    meshes.iter().flat_map(|mesh| &mesh.points).for_each(|p| take(*p));
+    view.surfaces.iter().flat_map(|grid| grid.points()).for_each(|p| take(*p));
+    let lines = figures.iter().flat_map(|figure| outlines(figure));
+    lines.flat_map(|line| line.points).for_each(take);
+    corners
+}
+
 /// The warning for a drawing without lines.
-fn blank(drawing: &Drawing, view: &ViewSpec, meshes: &[&PolyMesh]) -> Option<Diagnostic> {
+fn blank(drawing: &Drawing, view: &ViewSpec, bounds: Option<[DVec3; 2]>) -> Option<Diagnostic> {
     if drawing.segments > 0 || !drawing.lines.is_empty() {
         return None;
     }
     let warning = |words| Diagnostic::warning(Code::EmptyResult, words).label(view.place.0, "");
-    let points = || meshes.iter().flat_map(|mesh| &mesh.points);
-    let Some(&first) = points().next() else {
+    let Some([min, max]) = bounds else {
         return Some(warning("the view shows nothing: its shapes are empty"));
     };
-    let (min, max) = points().fold((first, first), |(a, b), &p| (a.min(p), b.max(p)));
     let corner = |p: DVec3| format!("[{}, {}, {}]", short(p.x), short(p.y), short(p.z));
     let words = "the view shows nothing: nothing of its shapes is in the window";
     let noted =

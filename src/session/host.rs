@@ -8,6 +8,7 @@ use super::{Session, hold};
 use crate::{
     base::{Diagnostic, FileError, Phase, SourceId, watch::during},
     eval::{Host, Loaded, library},
+    geom::Raster,
     realize,
     shape::{
         Geometry, GeometryError, Measures, ShapeGraph, ShapeId,
@@ -105,6 +106,10 @@ impl Geometry for Session<'_> {
 
     fn import(&self, file: &str) -> Result<Imported, GeometryError> {
         self.realizer.import(file)
+    }
+
+    fn heights(&self, file: &str) -> Result<Raster, GeometryError> {
+        self.realizer.heights(file)
     }
 
     fn read(&self, file: &str) -> Result<Vec<u8>, FileError> {

@@ -19,7 +19,9 @@ mod data;
 mod drafting;
 mod host;
 mod model;
+mod outline;
 mod sheet;
+mod subjects;
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 

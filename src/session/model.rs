@@ -178,6 +178,8 @@ impl<'s> Model<'s> {
         let name = stem.to_string_lossy().into_owned();
         let view = ViewSpec {
             shapes: parts.iter().map(|part| part.shape).collect(),
+            surfaces: vec![],
+            profiles: vec![],
             curves: vec![],
             projection: sight.projection,
             target: sight.target,

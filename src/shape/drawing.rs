@@ -7,7 +7,10 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use super::node::ShapeId;
-use crate::{base::Span, geom::mesh::Color};
+use crate::{
+    base::Span,
+    geom::{CurvedGrid, Placement, mesh::Color},
+};
 
 /// A place in the source. Two descriptions made in different places are equal all the same.
 #[derive(Clone, Copy, Debug, Default)]
@@ -29,17 +32,38 @@ pub enum CurveSpec {
         /// Whether the last point joins the first.
         closed: bool,
     },
-    /// An arc of a circle, in a plane parallel to xy.
+    /// An arc of a circle or an ellipse: center + cos(t) x + sin(t) y.
     Arc {
         /// Centre.
         center: DVec3,
-        /// Radius.
-        r: f64,
-        /// Angle of its start from +x, counter-clockwise.
+        /// From the centre to the point of angle 0.
+        x: DVec3,
+        /// From the centre to the point of angle 90.
+        y: DVec3,
+        /// Angle of its start.
         from: f64,
-        /// Angle of its end; clockwise when below `from`.
+        /// Angle of its end; below `from` when it runs the other way.
         to: f64,
     },
+}
+
+impl CurveSpec {
+    /// The curve after a placement.
+    pub fn placed(&self, placement: &Placement) -> CurveSpec {
+        match self {
+            CurveSpec::Polyline { points, closed } => CurveSpec::Polyline {
+                points: points.iter().map(|p| placement.point(*p)).collect(),
+                closed: *closed,
+            },
+            CurveSpec::Arc { center, x, y, from, to } => CurveSpec::Arc {
+                center: placement.point(*center),
+                x: placement.vector(*x),
+                y: placement.vector(*y),
+                from: *from,
+                to: *to,
+            },
+        }
+    }
 }
 
 /// One of the usual directions of view.
@@ -225,6 +249,10 @@ pub struct DimSpec {
 pub struct ViewSpec {
     /// Solids, each a body of its own.
     pub shapes: Vec<ShapeId>,
+    /// Plane figures, whose outlines are lines in space.
+    pub profiles: Vec<ShapeId>,
+    /// Surfaces.
+    pub surfaces: Vec<Arc<CurvedGrid>>,
     /// Lines in space.
     pub curves: Vec<Arc<CurveSpec>>,
     /// Where the eye is.

@@ -9,6 +9,7 @@ use glam::{DVec2, DVec3};
 use rustc_hash::FxHasher;
 
 use super::node::{Heal, Node, ShapeId, TextSpec};
+use crate::geom::CurvedGrid;
 
 /// The fingerprint of a node.
 pub(super) fn fingerprint(node: &Node) -> u64 {
@@ -62,6 +63,14 @@ impl Feed {
                 profile.hash(&mut self.0);
                 self.sized(&[*angle], *sides);
             }
+            Node::Thickened { surface, t } => {
+                self.surface(surface);
+                self.real(*t);
+            }
+            Node::Filled { surface, base } => {
+                self.surface(surface);
+                base.iter().for_each(|z| self.real(*z));
+            }
             Node::ImportSolid { file, heal } => {
                 file.hash(&mut self.0);
                 self.heal(*heal);
@@ -94,6 +103,11 @@ impl Feed {
             Node::Paint { color, child } => (color, child).hash(&mut self.0),
             _ => unreachable!("all other nodes are hashed by `node`"),
         }
+    }
+
+    fn surface(&mut self, surface: &CurvedGrid) {
+        (surface.size(), surface.closed()).hash(&mut self.0);
+        surface.points().iter().for_each(|&p| self.space(p));
     }
 
     fn sized(&mut self, numbers: &[f64], sides: Option<u32>) {

@@ -8,7 +8,10 @@ use super::{
     graph::ShapeGraph,
     node::{ShapeId, TextSpec},
 };
-use crate::base::{Diagnostic, FileError};
+use crate::{
+    base::{Diagnostic, FileError},
+    geom::Raster,
+};
 
 /// Measures of a solid's closed boundary, or of a profile's region.
 #[derive(Clone, PartialEq, Debug)]
@@ -131,6 +134,9 @@ pub trait Geometry {
 
     /// Looks into a file (path relative to the project root) far enough to say what it holds.
     fn import(&self, file: &str) -> Result<Imported, GeometryError>;
+
+    /// The numbers of a height map (path relative to the project root).
+    fn heights(&self, file: &str) -> Result<Raster, GeometryError>;
 
     /// The bytes of a file, for goldens and snapshots.
     fn read(&self, file: &str) -> Result<Vec<u8>, FileError>;

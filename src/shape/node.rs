@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use crate::geom::{Placement, mesh::Color};
+use crate::geom::{CurvedGrid, Placement, mesh::Color};
 
 /// Names a node of one [`ShapeGraph`](super::ShapeGraph).
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -136,6 +136,20 @@ pub enum Node {
     },
     /// The convex hull of solids, or of profiles.
     Hull(Arc<[ShapeId]>),
+    /// A sheet about a surface, half of its thickness to each side.
+    Thickened {
+        /// The surface.
+        surface: Arc<CurvedGrid>,
+        /// The thickness, above 0.
+        t: f64,
+    },
+    /// What lies between a surface and a floor.
+    Filled {
+        /// The surface.
+        surface: Arc<CurvedGrid>,
+        /// z of the floor; none for what the surface encloses, its rims closed by planes.
+        base: Option<f64>,
+    },
     /// A mesh from a file (path relative to the project root).
     ImportSolid {
         /// The file.

@@ -32,5 +32,6 @@ fn arc(_: &mut Evaluator, args: &Args) -> Outcome<Value> {
     if (to - from).abs() > 360.0 {
         return args.degenerate(3, "must be within a full turn of `from`");
     }
-    Ok(Value::Curve(Arc::new(CurveSpec::Arc { center, r, from, to })))
+    let (x, y) = (DVec3::X * r, DVec3::Y * r);
+    Ok(Value::Curve(Arc::new(CurveSpec::Arc { center, x, y, from, to })))
 }

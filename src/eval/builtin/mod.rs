@@ -16,6 +16,7 @@ mod random;
 mod references;
 mod solids;
 mod strings;
+mod surfaces;
 mod views;
 
 pub use files::data_value;
@@ -56,6 +57,7 @@ pub fn find(name: &str) -> Option<Native> {
         references::TABLE,
         solids::TABLE,
         strings::TABLE,
+        surfaces::TABLE,
         views::TABLE,
     ];
     let mut entries = tables.into_iter().flatten();

@@ -1,8 +1,10 @@
 //! Where shapes stand, and what they look like.
 
+use std::sync::Arc;
+
 use glam::{DMat3, DVec3};
 
-use super::{Args, Native, colors, coordinates};
+use super::{Args, Native, colors, coordinates, surfaces};
 use crate::{
     base::Code,
     eval::{
@@ -31,7 +33,17 @@ pub const TABLE: &[(&str, Native)] = &[
 
 /// A shape after a map; maps that follow one another become one.
 fn place(evaluator: &mut Evaluator, args: &Args, placement: Placement) -> Outcome<Value> {
-    let shape = args.shape(0)?;
+    let shape = match args.value(0) {
+        Value::Surface(surface) => {
+            within_reach(args, &placement)?;
+            return surfaces::keep(evaluator, args, surface.grid().placed(&placement));
+        }
+        Value::Curve(curve) => {
+            within_reach(args, &placement)?;
+            return Ok(Value::Curve(Arc::new(curve.placed(&placement))));
+        }
+        _ => args.shape(0)?,
+    };
     let id = placed(evaluator, args, shape, placement)?;
     Ok(evaluator.shape_value(id))
 }
@@ -50,6 +62,11 @@ fn placed(
     if placement.is_identity() {
         return Ok(child);
     }
+    within_reach(args, &placement)?;
+    Ok(evaluator.add_node(Node::Transform { placement, child }, args.call))
+}
+
+fn within_reach(args: &Args, placement: &Placement) -> Outcome<()> {
     let map = [placement.linear().x_axis, placement.linear().y_axis, placement.linear().z_axis];
     let fits = |column: DVec3| column.abs().max_element() <= REACH && column.is_finite();
     if !(map.into_iter().all(fits) && fits(placement.offset())) {
@@ -57,7 +74,7 @@ fn placed(
             format!("the shape is moved or scaled too far: its map holds numbers beyond {REACH:e}");
         return fail(Code::OutOfRange, args.call, words);
     }
-    Ok(evaluator.add_node(Node::Transform { placement, child }, args.call))
+    Ok(())
 }
 
 fn moved(evaluator: &mut Evaluator, args: &Args, v: DVec3) -> Outcome<Value> {

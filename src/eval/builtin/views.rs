@@ -15,8 +15,9 @@ use crate::{
         types::shown,
         value::{Record, Symbol, Value},
     },
+    geom::CurvedGrid,
     shape::{
-        CurveSpec, Kind, ShapeId, ViewSpec,
+        CurveSpec, ShapeId, ViewSpec,
         drawing::{
             CutPlane, DimSpec, Hidden, Measured, Method, PenName, PenSpec, Place, Projection, Side,
             StyleSpec,
@@ -38,11 +39,13 @@ pub const TABLE: &[(&str, Native)] = &[
 
 /// `shapes, from, eye, target, fov, window, hidden, style, method`.
 fn view(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
-    let (shapes, curves) = subjects(evaluator, args)?;
+    let subjects = subjects(evaluator, args)?;
     let target = args.point(3)?;
     let spec = ViewSpec {
-        shapes,
-        curves,
+        shapes: subjects.shapes,
+        surfaces: subjects.surfaces,
+        profiles: subjects.profiles,
+        curves: subjects.curves,
         projection: projection(args, target)?,
         target,
         window: window(args)?,
@@ -57,30 +60,41 @@ fn view(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
     Ok(Value::Drawing(Arc::new(spec)))
 }
 
-/// The solids and curves of the first argument, lists opened at every level.
-fn subjects(
-    evaluator: &mut Evaluator,
-    args: &Args,
-) -> Outcome<(Vec<ShapeId>, Vec<Arc<CurveSpec>>)> {
-    let (mut shapes, mut curves) = (vec![], vec![]);
+/// Why a surface is not cut.
+const OPEN: &str =
+    "a section cuts solids, not surfaces; make a solid with `.thicken(t)` or `.solid(base = ...)`";
+
+/// What a view shows.
+#[derive(Default)]
+struct Subjects {
+    shapes: Vec<ShapeId>,
+    profiles: Vec<ShapeId>,
+    surfaces: Vec<Arc<CurvedGrid>>,
+    curves: Vec<Arc<CurveSpec>>,
+}
+
+/// What the first argument holds, lists opened at every level.
+fn subjects(evaluator: &mut Evaluator, args: &Args) -> Outcome<Subjects> {
+    let mut found = Subjects::default();
     let mut pending = vec![args.value(0).clone()];
     while let Some(value) = pending.pop() {
         evaluator.tick(1, args.call)?;
         match value {
-            Value::Solid(id) => shapes.push(id),
-            Value::Curve(curve) => curves.push(curve),
+            Value::Solid(id) => found.shapes.push(id),
+            Value::Profile(id) => found.profiles.push(id),
+            Value::Surface(surface) => found.surfaces.push(surface.grid().clone()),
+            Value::Curve(curve) => found.curves.push(curve),
             Value::List(list) => pending.extend(list.iter().rev().cloned()),
             other => {
-                let words = format!("a view needs solids and curves, got {}", shown(&other));
-                let error = Diagnostic::error(Code::WrongKind, words).label(args.span(0), "");
-                let flat =
-                    other.shape().is_some_and(|s| evaluator.graph().kind(s) == Kind::Profile);
-                let help = "make a solid of it with `.extrude(h)`";
-                return Err(if flat { error.help(help) } else { error }.into());
+                let words = format!(
+                    "a view needs solids, surfaces, profiles and curves, got {}",
+                    shown(&other)
+                );
+                return args.fail(0, Code::WrongKind, words);
             }
         }
     }
-    Ok((shapes, curves))
+    Ok(found)
 }
 
 fn side(symbol: Symbol) -> Option<Side> {
@@ -340,11 +354,16 @@ fn plane(args: &Args, i: usize) -> Outcome<(CutPlane, Option<Side>)> {
 
 /// `shapes, plane, hidden, style`: the cut, seen against the normal of the plane.
 fn section_of_shapes(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
-    let (shapes, curves) = subjects(evaluator, args)?;
+    let subjects = subjects(evaluator, args)?;
+    if !subjects.surfaces.is_empty() {
+        return args.fail(0, Code::WrongKind, OPEN);
+    }
     let (plane, side) = plane(args, 1)?;
     let spec = ViewSpec {
-        shapes,
-        curves,
+        shapes: subjects.shapes,
+        surfaces: vec![],
+        profiles: subjects.profiles,
+        curves: subjects.curves,
         projection: side.map_or(Projection::Direction(plane.normal), Projection::Side),
         target: DVec3::ZERO,
         window: None,
@@ -366,7 +385,7 @@ fn changed(
     change: impl FnOnce(&mut ViewSpec),
 ) -> Outcome<Value> {
     let Value::Drawing(view) = args.value(0) else { return args.wrong(0, "a drawing") };
-    let copied = view.shapes.len() + view.curves.len() + view.dims.len();
+    let copied = view.shapes.len() + view.surfaces.len() + view.curves.len() + view.dims.len();
     evaluator.tick(copied as u64, args.call)?;
     let mut view = ViewSpec::clone(view);
     change(&mut view);
@@ -375,10 +394,13 @@ fn changed(
 
 fn section_of_view(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
     let (plane, _) = plane(args, 1)?;
-    if let Value::Drawing(view) = args.value(0)
-        && view.section.is_some()
-    {
-        return args.fail(0, Code::BadCall, "the view is a section already");
+    if let Value::Drawing(view) = args.value(0) {
+        if view.section.is_some() {
+            return args.fail(0, Code::BadCall, "the view is a section already");
+        }
+        if !view.surfaces.is_empty() {
+            return args.fail(0, Code::WrongKind, OPEN);
+        }
     }
     changed(evaluator, args, |view| view.section = Some(plane))
 }

@@ -38,6 +38,7 @@ pub fn equal(a: &Value, b: &Value, steps: &mut u64) -> Result<bool, Incomparable
         (Value::Text(a), Value::Text(b)) => Ok(a == b),
         (Value::Solid(a), Value::Solid(b)) | (Value::Profile(a), Value::Profile(b)) => Ok(a == b),
         (Value::Curve(a), Value::Curve(b)) => Ok(a == b),
+        (Value::Surface(a), Value::Surface(b)) => Ok(a.grid() == b.grid()),
         (Value::Drawing(a), Value::Drawing(b)) => Ok(a == b),
         (Value::Page(a), Value::Page(b)) => Ok(a == b),
         (Value::Module(a), Value::Module(b)) => Ok(a == b),

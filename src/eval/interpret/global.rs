@@ -512,6 +512,7 @@ pub fn type_of(default: &Value) -> Type {
         Value::Solid(_) => Type::Solid,
         Value::Profile(_) => Type::Profile,
         Value::Curve(_) => Type::Curve,
+        Value::Surface(_) => Type::Surface,
         Value::Drawing(_) => Type::Drawing,
         Value::Page(_) => Type::Page,
         Value::Symbol(_) | Value::Module(_) => Type::Any,

@@ -12,7 +12,7 @@ use std::sync::Arc;
 pub use function::{Closure, Function};
 pub use print::number_text;
 pub use range::Range;
-pub use store::{List, Record, Text};
+pub use store::{List, Record, Surface, Text};
 pub use symbol::Symbol;
 
 use super::{dimension::Dimension, instance::InstanceId};
@@ -43,6 +43,8 @@ pub enum Value {
     Profile(ShapeId),
     /// A curve in space.
     Curve(Arc<CurveSpec>),
+    /// A surface given by points in rows.
+    Surface(Arc<Surface>),
     /// A view of shapes.
     Drawing(Arc<ViewSpec>),
     /// A page with views on it.
@@ -96,6 +98,7 @@ impl Value {
             Value::Solid(_) => "a solid".into(),
             Value::Profile(_) => "a profile".into(),
             Value::Curve(_) => "a curve".into(),
+            Value::Surface(_) => "a surface".into(),
             Value::Drawing(_) => "a drawing".into(),
             Value::Page(_) => "a page".into(),
             Value::Module(_) => "a module".into(),

@@ -87,6 +87,7 @@ impl Printer<'_, '_> {
             Value::Solid(_) => self.f.write_str("<solid>"),
             Value::Profile(_) => self.f.write_str("<profile>"),
             Value::Curve(_) => self.f.write_str("<curve>"),
+            Value::Surface(_) => self.f.write_str("<surface>"),
             Value::Drawing(_) => self.f.write_str("<drawing>"),
             Value::Page(_) => self.f.write_str("<page>"),
             Value::Module(_) => self.f.write_str("<module>"),

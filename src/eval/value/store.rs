@@ -7,6 +7,7 @@ use super::{
     function::Function,
     meter::{self, BYTES_A_VALUE},
 };
+use crate::geom::CurvedGrid;
 
 /// The elements of a list.
 #[derive(Debug)]
@@ -66,6 +67,32 @@ impl Deref for Text {
     type Target = str;
     fn deref(&self) -> &str {
         &self.0
+    }
+}
+
+/// A surface given by points in rows.
+#[derive(Debug)]
+pub struct Surface(Arc<CurvedGrid>);
+
+impl Surface {
+    /// A point with its number takes so many times the room of a value.
+    pub const VALUES_A_POINT: usize = 2;
+
+    /// A surface with these points.
+    pub fn new(grid: CurvedGrid) -> Surface {
+        meter::take(grid.points().len() * Surface::VALUES_A_POINT);
+        Surface(Arc::new(grid))
+    }
+
+    /// Its points.
+    pub fn grid(&self) -> &Arc<CurvedGrid> {
+        &self.0
+    }
+}
+
+impl Drop for Surface {
+    fn drop(&mut self) {
+        meter::give_back(self.0.points().len() * Surface::VALUES_A_POINT);
     }
 }
 

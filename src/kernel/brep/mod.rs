@@ -14,5 +14,6 @@ pub mod polyhedron;
 pub mod primitive;
 pub mod revolve;
 mod ridge;
+pub mod sheet;
 
 pub use polyhedron::{Defect, Polyhedron};

@@ -6,155 +6,112 @@
 //!
 //! Source: T. Nishita (METHODS, section 3.6).
 
-use std::collections::BTreeMap;
-
 use glam::DVec3;
-use thiserror::Error;
 
-use super::{
-    Body, Camera, Drawing, Options, Scene, Stroke, horizon::HeightField, scene::Kind, visible_lines,
-};
-use crate::geom::{Origin, PolyMesh, Surface};
+use super::{Body, Camera, Drawing, Options, Scene, Stroke, scene::Kind, visible_lines};
+use crate::geom::CurvedGrid;
 
-/// An angle that no two faces exceed, degrees: a curved grid has no sharp edges.
-const SMOOTH: f64 = 180.0;
-
-/// Points of a surface in rows.
-#[derive(Clone, PartialEq, Debug)]
-pub struct CurvedGrid {
-    points: Vec<DVec3>,
-    /// The number of each point; those at one place have one number.
-    number: Vec<u32>,
-    /// Points along u and v.
-    size: [usize; 2],
-    /// Whether the last point is followed by the first.
-    closed: [bool; 2],
+/// The grid lines of a surface: [`Kind::Upper`] where the side is towards the eye from which u turns to v
+/// counter-clockwise, [`Kind::Lower`] where the other is, and [`Kind::Pattern`] all over a surface that is closed both ways.
+pub fn grid_strokes(grid: &CurvedGrid, camera: &Camera, id: u32) -> Vec<Stroke> {
+    let ([nu, nv], [cu, cv]) = (grid.size(), grid.cells());
+    let sides = Sides::new(grid, camera);
+    let mut strokes = vec![];
+    for u in 0..nu {
+        add_line(&mut strokes, id, cv, |v| grid.point(u, v), |v| sides.along_v(u, v));
+    }
+    for v in 0..nv {
+        add_line(&mut strokes, id, cu, |u| grid.point(u, v), |u| sides.along_u(u, v));
+    }
+    strokes
 }
 
-/// Why points make no grid.
-#[derive(Clone, PartialEq, Debug, Error)]
-pub enum GridError {
-    /// Rows of different lengths.
-    #[error("row {row} has {found} points; all need {needed}, as the first row has")]
-    Ragged {
-        /// The row, from 0.
-        row: usize,
-        /// Its points.
-        found: usize,
-        /// Points of the first row.
-        needed: usize,
-    },
-    /// Too few points.
-    #[error("the grid has {nu} x {nv} points; an open way needs at least 2, a closed one 3")]
-    Few {
-        /// Rows.
-        nu: usize,
-        /// Points in a row.
-        nv: usize,
-    },
-    /// A coordinate that is NaN or infinite.
-    #[error("point {v} of row {u} is not finite")]
-    NotFinite {
-        /// Its row, from 0.
-        u: usize,
-        /// Its place in the row, from 0.
-        v: usize,
-    },
-}
-
-impl CurvedGrid {
-    /// A grid of rows of points, mm; `closed_u` joins the last row to the first, `closed_v` the ends of each row. Fails for
-    /// rows of different lengths, fewer than two points an open way or three a closed one, and points that are not finite.
-    pub fn new(
-        rows: &[Vec<DVec3>],
-        closed_u: bool,
-        closed_v: bool,
-    ) -> Result<CurvedGrid, GridError> {
-        let (nu, nv) = (rows.len(), rows.first().map_or(0, Vec::len));
-        if let Some(row) = rows.iter().position(|r| r.len() != nv) {
-            return Err(GridError::Ragged { row, found: rows[row].len(), needed: nv });
+/// Adds a grid line of so many edges, a stroke for each run of one kind.
+fn add_line(
+    strokes: &mut Vec<Stroke>,
+    id: u32,
+    edges: usize,
+    point: impl Fn(usize) -> DVec3,
+    kind: impl Fn(usize) -> Kind,
+) {
+    let mut last = None;
+    for edge in 0..edges {
+        let (kind, to) = (kind(edge), point(edge + 1));
+        match strokes.last_mut() {
+            Some(stroke) if last == Some(kind) => stroke.points.push(to),
+            _ => strokes.push(Stroke { points: vec![point(edge), to], kind, id, round: None }),
         }
-        let enough = |n: usize, closed: bool| n >= if closed { 3 } else { 2 };
-        if !enough(nu, closed_u) || !enough(nv, closed_v) {
-            return Err(GridError::Few { nu, nv });
-        }
-        let points: Vec<DVec3> = rows.iter().flatten().copied().collect();
-        if let Some(i) = points.iter().position(|p| !p.is_finite()) {
-            return Err(GridError::NotFinite { u: i / nv, v: i % nv });
-        }
-        let number = numbered(&points);
-        Ok(CurvedGrid { points, number, size: [nu, nv], closed: [closed_u, closed_v] })
-    }
-
-    /// The number of the point u, v, counted around where the grid is closed.
-    fn at(&self, u: usize, v: usize) -> u32 {
-        let [nu, nv] = self.size;
-        self.number[u % nu * nv + v % nv]
-    }
-
-    /// Cells along u and v.
-    fn cells(&self) -> [usize; 2] {
-        [0, 1].map(|i| if self.closed[i] { self.size[i] } else { self.size[i] - 1 })
-    }
-
-    /// The surface as triangles: a cell is cut along its shorter diagonal, corners that fall together leave one
-    /// triangle or none.
-    pub fn mesh(&self) -> PolyMesh {
-        let mut mesh = PolyMesh::with_points(self.points.clone());
-        let origin = mesh.add_origin(Origin::of(Surface::Facets));
-        let [cu, cv] = self.cells();
-        for (u, v) in (0..cu).flat_map(|u| (0..cv).map(move |v| (u, v))) {
-            let [a, b, c, d] =
-                [self.at(u, v), self.at(u + 1, v), self.at(u + 1, v + 1), self.at(u, v + 1)];
-            let length =
-                |p: u32, q: u32| self.points[p as usize].distance_squared(self.points[q as usize]);
-            let straight = length(a, c) <= length(b, d);
-            let halves = if straight { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
-            for [p, q, r] in halves {
-                if p != q && q != r && r != p {
-                    let plane = mesh.add_plane();
-                    mesh.push_face(&[[p, q, r]], plane, origin);
-                }
-            }
-        }
-        mesh
-    }
-
-    /// The grid lines.
-    fn lines(&self, id: u32) -> Vec<Stroke> {
-        let [nu, nv] = self.size;
-        let [cu, cv] = self.cells();
-        let point = |u: usize, v: usize| self.points[self.at(u, v) as usize];
-        let rows = (0..nu).map(|u| (0..=cv).map(|v| point(u, v)).collect());
-        let columns = (0..nv).map(|v| (0..=cu).map(|u| point(u, v)).collect());
-        let stroke = |points: Vec<DVec3>| Stroke { points, kind: Kind::Pattern, id };
-        rows.chain(columns).map(stroke).collect()
+        last = Some(kind);
     }
 }
 
-impl From<&HeightField> for CurvedGrid {
-    /// A single-valued surface as a grid, for what a horizon cannot do: hidden lines, and other solids in the scene.
-    fn from(field: &HeightField) -> CurvedGrid {
-        let rows = field.rows();
-        let size = [rows.len(), rows[0].len()];
-        let points: Vec<DVec3> = rows.into_iter().flatten().collect();
-        let number = (0..points.len() as u32).collect();
-        CurvedGrid { points, number, size, closed: [false; 2] }
+/// Which side of each triangle of a grid is towards the eye.
+struct Sides<'a> {
+    grid: &'a CurvedGrid,
+    /// Of each cell, whether the upper side of its two triangles is seen.
+    upper: Vec<[bool; 2]>,
+}
+
+impl<'a> Sides<'a> {
+    fn new(grid: &'a CurvedGrid, camera: &Camera) -> Sides<'a> {
+        let [cu, cv] = grid.cells();
+        let seen = |corners: [u32; 3]| {
+            let [a, b, c] = corners.map(|i| grid.points()[i as usize]);
+            (b - a).cross(c - a).dot(camera.sight(a)) > 0.0
+        };
+        let cells = (0..cu).flat_map(|u| (0..cv).map(move |v| (u, v)));
+        let upper = cells.map(|(u, v)| grid.halves(u, v).0.map(seen)).collect();
+        Sides { grid, upper }
+    }
+
+    /// Whether the upper side is seen at a side of a cell: that from corner `side` on; `None` outside the grid.
+    fn at(&self, u: usize, v: usize, side: usize) -> Option<bool> {
+        let [cu, cv] = self.grid.cells();
+        if u >= cu || v >= cv {
+            return None;
+        }
+        let (_, straight) = self.grid.halves(u, v);
+        let half = if straight { [0, 0, 1, 1] } else { [0, 1, 1, 0] }[side];
+        Some(self.upper[u * cv + v][half])
+    }
+
+    /// The cell before number `i` along a way of `n` points.
+    fn before(&self, way: usize, i: usize) -> usize {
+        let last = self.grid.size()[way] - 1;
+        if i > 0 {
+            i - 1
+        } else if self.grid.closed()[way] {
+            last
+        } else {
+            usize::MAX
+        }
+    }
+
+    fn along_v(&self, u: usize, v: usize) -> Kind {
+        self.kind([self.at(u, v, 3), self.at(self.before(0, u), v, 1)])
+    }
+
+    fn along_u(&self, u: usize, v: usize) -> Kind {
+        self.kind([self.at(u, v, 0), self.at(u, self.before(1, v), 2)])
+    }
+
+    /// The kind of a grid line between two triangles.
+    fn kind(&self, beside: [Option<bool>; 2]) -> Kind {
+        if self.grid.closed() == [true; 2] {
+            Kind::Pattern
+        } else if beside.contains(&Some(true)) {
+            Kind::Upper
+        } else {
+            Kind::Lower
+        }
     }
 }
 
-/// The number of the first point at the same place, for each point.
-fn numbered(points: &[DVec3]) -> Vec<u32> {
-    let mut first: BTreeMap<[u64; 3], u32> = BTreeMap::new();
-    let key = |p: &DVec3| (*p + DVec3::ZERO).to_array().map(f64::to_bits);
-    points.iter().zip(0..).map(|(p, i)| *first.entry(key(p)).or_insert(i)).collect()
-}
-
-/// The grid lines ([`Kind::Pattern`]), contours and rims of a curved grid.
+/// The grid lines, contours and rims of a curved grid.
 ///
 /// ```
 /// use glam::dvec3;
-/// use katachi::output::drawing::{Camera, CurvedGrid, Options, View, grid_lines};
+/// use katachi::{geom::CurvedGrid, output::drawing::{Camera, Options, View, grid_lines}};
 /// let row = |y: f64| (0..3).map(|x| dvec3(f64::from(x), y, 0.0)).collect();
 /// let flat = CurvedGrid::new(&[row(0.0), row(1.0)], false, false).unwrap();
 /// let top = grid_lines(&flat, &Camera::view(View::Top), &Options::default(), 0);
@@ -162,8 +119,11 @@ fn numbered(points: &[DVec3]) -> Vec<u32> {
 /// ```
 pub fn grid_lines(grid: &CurvedGrid, camera: &Camera, options: &Options, id: u32) -> Drawing {
     let mesh = grid.mesh();
-    let scene = Scene { bodies: vec![Body { mesh: &mesh, id }], strokes: grid.lines(id) };
-    visible_lines(&scene, camera, &Options { crease: SMOOTH, ..*options })
+    let scene = Scene {
+        bodies: vec![Body { mesh: &mesh, id, smooth: true }],
+        strokes: grid_strokes(grid, camera, id),
+    };
+    visible_lines(&scene, camera, options)
 }
 
 #[cfg(test)]
@@ -171,7 +131,7 @@ mod tests {
     use glam::dvec3;
 
     use super::*;
-    use crate::output::drawing::{Class, View, horizon_lines};
+    use crate::output::drawing::{Class, HeightField, View, horizon_lines};
 
     /// A grid over two angles in 0..1.
     fn around(nu: usize, nv: usize, at: impl Fn(f64, f64) -> DVec3) -> Vec<Vec<DVec3>> {
@@ -235,14 +195,18 @@ mod tests {
 
     #[test]
     fn a_height_field_is_seen_alike_by_both_methods() {
-        let places: Vec<f64> = (0..25).map(|i| f64::from(i) - 12.0).collect();
-        let heights = places.iter().flat_map(|x| {
-            places.iter().map(move |y| 3.0 * libm::sin(0.7 * x) * libm::cos(0.5 * y))
-        });
-        let field = HeightField::new(places.clone(), places.clone(), heights.collect()).unwrap();
+        let height = |x: f64, y: f64| 3.0 * libm::sin(0.7 * x) * libm::cos(0.5 * y);
+        let point = |i: i32, j: i32| {
+            let [x, y] = [i, j].map(f64::from);
+            dvec3(x, y, height(x, y))
+        };
+        let row = |i: i32| (-12..=12).map(|j| point(i, j)).collect();
+        let rows: Vec<Vec<DVec3>> = (-12..=12).map(row).collect();
+        let grid = CurvedGrid::new(&rows, false, false).expect("a grid");
+        let field = HeightField::of(&grid).expect("a function of x and y");
         let camera = Camera::parallel(dvec3(0.4, -1.0, 0.35)).expect("a direction");
         let horizon = horizon_lines(&field, &camera, 0).expect("before the eye");
-        let general = grid_lines(&CurvedGrid::from(&field), &camera, &Options::default(), 0);
+        let general = grid_lines(&grid, &camera, &Options::default(), 0);
         let grid: f64 = general
             .lines
             .iter()
@@ -252,18 +216,5 @@ mod tests {
         // Contours run along diagonals too in the one, cells are bounded by grid lines alone in the other.
         let apart = (grid - horizon.visible).abs() / grid;
         assert!(apart < 0.1, "{grid} and {}", horizon.visible);
-    }
-
-    #[test]
-    fn bad_grids_are_told() {
-        let made = |rows: &[Vec<DVec3>], closed| CurvedGrid::new(rows, closed, false);
-        let row = vec![DVec3::ZERO, DVec3::X];
-        let few = [row.clone(), row.clone()];
-        assert_eq!(made(&few, true), Err(GridError::Few { nu: 2, nv: 2 }));
-        assert_eq!(made(&[], false), Err(GridError::Few { nu: 0, nv: 0 }));
-        let ragged = [row.clone(), vec![DVec3::Y]];
-        assert_eq!(made(&ragged, false), Err(GridError::Ragged { row: 1, found: 1, needed: 2 }));
-        let nan = [row, vec![DVec3::Y, DVec3::NAN]];
-        assert_eq!(made(&nan, false), Err(GridError::NotFinite { u: 1, v: 1 }));
     }
 }

@@ -14,7 +14,7 @@ use super::{
     merge::Piece,
     scene::{Scene, Stroke},
 };
-use crate::geom::PolyMesh;
+use crate::geom::{PolyMesh, trig::cos_deg};
 
 /// A body as far as it is before the eye.
 #[derive(Clone, Debug)]
@@ -25,6 +25,8 @@ pub struct Visible<'a> {
     pub id: u32,
     /// Points from this number on lie in the cut.
     pub cut: u32,
+    /// The cosine of the angle from which on facets without a closed form meet in an edge.
+    pub crease: f64,
 }
 
 impl Visible<'_> {
@@ -41,8 +43,12 @@ fn is_near(p: &DVec3) -> bool {
     p.is_finite() && p.abs().max_element() <= FARTHEST
 }
 
-/// The bodies and strokes of a scene as far as they are before the eye.
-pub fn before_eye<'a>(scene: &Scene<'a>, camera: &Camera) -> (Vec<Visible<'a>>, Vec<Stroke>) {
+/// The bodies and strokes of a scene as far as they are before the eye; facets meet in an edge from an angle on, degrees.
+pub fn before_eye<'a>(
+    scene: &Scene<'a>,
+    camera: &Camera,
+    crease: f64,
+) -> (Vec<Visible<'a>>, Vec<Stroke>) {
     let mut bodies = vec![];
     for body in &scene.bodies {
         let (mesh, id, cut) = (body.mesh, body.id, body.mesh.points.len() as u32);
@@ -50,11 +56,12 @@ pub fn before_eye<'a>(scene: &Scene<'a>, camera: &Camera) -> (Vec<Visible<'a>>, 
             continue;
         }
         let behind = mesh.points.iter().filter(|p| camera.ahead(**p) < 0.0).count();
+        let crease = if body.smooth { -1.0 } else { cos_deg(crease) };
         if behind == 0 {
-            bodies.push(Visible { mesh: Cow::Borrowed(mesh), id, cut });
+            bodies.push(Visible { mesh: Cow::Borrowed(mesh), id, cut, crease });
         } else if behind < mesh.points.len() {
             let mesh = Cow::Owned(cut_mesh(mesh, camera));
-            bodies.push(Visible { mesh, id, cut });
+            bodies.push(Visible { mesh, id, cut, crease });
         }
     }
     let near = scene.strokes.iter().filter(|s| s.points.iter().all(is_near));
@@ -122,6 +129,7 @@ fn cut_loop(
 
 /// The parts of a stroke before the eye.
 fn cut_stroke(stroke: &Stroke, camera: &Camera) -> Vec<Stroke> {
+    let whole = stroke.points.iter().all(|p| camera.ahead(*p) >= 0.0);
     let mut parts: Vec<Vec<DVec3>> = vec![vec![]];
     for (i, &p) in stroke.points.iter().enumerate() {
         let before = i.checked_sub(1).map(|k| stroke.points[k]);
@@ -136,7 +144,8 @@ fn cut_stroke(stroke: &Stroke, camera: &Camera) -> Vec<Stroke> {
         }
     }
     parts.retain(|points| points.len() > 1);
-    parts.into_iter().rev().map(|points| Stroke { points, ..*stroke }).collect()
+    let round = stroke.round.filter(|_| whole);
+    parts.into_iter().rev().map(|points| Stroke { points, round, ..*stroke }).collect()
 }
 
 /// Places on a curved line that are looked at for where it passes the border of a window.
@@ -234,7 +243,7 @@ mod tests {
     fn strokes_are_cut_before_the_eye() {
         let camera = Camera::perspective(DVec3::X * 10.0, DVec3::ZERO).expect("apart");
         let points = [0.0, 20.0, 0.0].map(|x| DVec3::new(x, x / 4.0, 0.0)).to_vec();
-        let parts = cut_stroke(&Stroke { points, kind: Kind::Free, id: 3 }, &camera);
+        let parts = cut_stroke(&Stroke { points, kind: Kind::Free, id: 3, round: None }, &camera);
         assert_eq!(parts.iter().map(|p| p.points.len()).collect::<Vec<_>>(), [2, 2]);
         assert!((parts[0].points[1].x - 9.9).abs() < 1e-12);
         assert_eq!(parts[0].points[1], parts[1].points[0]);

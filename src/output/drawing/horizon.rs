@@ -20,6 +20,7 @@ use super::{
     merge::{Mark, Piece},
     scene::Kind,
 };
+use crate::geom::CurvedGrid;
 
 /// Heights over the points of a grid.
 #[derive(Clone, PartialEq, Debug)]
@@ -88,10 +89,11 @@ impl HeightField {
         }
     }
 
-    /// The points of the surface in rows of one x.
-    pub(super) fn rows(&self) -> Vec<Vec<DVec3>> {
-        let row = |i| (0..self.y.len()).map(|j| self.point([i, j])).collect();
-        (0..self.x.len()).map(row).collect()
+    /// The heights of a grid that is a function of x and y; `None` for another.
+    pub fn of(grid: &CurvedGrid) -> Option<HeightField> {
+        let [x, y] = grid.places()?;
+        let z = grid.points().iter().map(|p| p.z).collect();
+        Some(HeightField { x, y, z })
     }
 
     fn point(&self, [i, j]: [usize; 2]) -> DVec3 {

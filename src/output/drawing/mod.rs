@@ -65,15 +65,17 @@ mod meet;
 mod merge;
 mod model;
 mod patches;
+mod round;
 mod scene;
 mod smooth;
 mod span;
 mod strips;
 
 pub use camera::{Camera, CameraError, View, Window};
-pub use curved_grid::{CurvedGrid, GridError, grid_lines};
+pub use curved_grid::{grid_lines, grid_strokes};
 pub use drawing::{Class, Drawing, Line, Path, Segment};
 pub use horizon::{HeightField, HorizonError, horizon_lines};
+pub use round::Round;
 pub use scene::{Body, Hidden, Kind, Method, Options, Scene, Stroke};
 
 use rayon::prelude::*;
@@ -137,7 +139,16 @@ fn hide(model: &Model, method: Method, sheet: &mut Sheet) {
         });
     }
     let strokes = model.hulls.last().map_or(0, |h| h.edges.end)..model.edges.len();
-    sheet.add_edges(model, strokes, |edge, out| clipper.hide(edge, &mut desk, out));
+    let mut from = strokes.start;
+    for bow in &model.bows {
+        let Some(ellipse) = bow.ellipse(model) else { continue };
+        let edges = bow.edges();
+        sheet.add_edges(model, from..edges.start, |e, out| clipper.hide(e, &mut desk, out));
+        let hide = |edge: &Edge, out: &mut Vec<Span>| clipper.hide(edge, &mut desk, out);
+        bow.pieces(model, ellipse, hide, mark, &mut sheet.arcs);
+        from = edges.end;
+    }
+    sheet.add_edges(model, from..strokes.end, |edge, out| clipper.hide(edge, &mut desk, out));
     hide_chains(model, &counter, sheet);
 }
 

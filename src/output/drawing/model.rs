@@ -12,10 +12,11 @@ use super::{
     lattice::{Lattice, Plane},
     links::{self, Link, NONE, links},
     patches::faithful_origins,
+    round::Bow,
     scene::{Kind, Options, Scene, Stroke},
     smooth,
 };
-use crate::geom::{Bounds, PolyMesh, Surface, bvh::Bvh, trig::cos_deg};
+use crate::geom::{Bounds, PolyMesh, Surface, bvh::Bvh};
 
 /// A point nearer than this part of the scene's size to a face's plane lies in it: set operations round
 /// points to 2^-29 of the size, and a plane through rounded points misses others by a few times that.
@@ -125,6 +126,8 @@ pub struct Model {
     pub curves: Vec<Curve>,
     /// Points where a chain of chords is cut although it goes on: cusps of contours.
     pub cusps: Vec<u32>,
+    /// Strokes that are arcs.
+    pub bows: Vec<Bow>,
     /// The camera.
     pub camera: Camera,
     /// Picture to lattice.
@@ -150,7 +153,7 @@ struct Faces {
 impl Model {
     /// The model of what is before the eye.
     pub fn new(scene: &Scene, camera: &Camera, options: &Options) -> Model {
-        let (bodies, strokes) = before_eye(scene, camera);
+        let (bodies, strokes) = before_eye(scene, camera, options.crease);
         let mut model = Model::placed(&bodies, &strokes, camera, options);
         let mut base = 0;
         for body in &bodies {
@@ -164,6 +167,8 @@ impl Model {
         model.mark_reached();
         for stroke in &strokes {
             let corners = base..base + stroke.points.len() as u32;
+            let first = model.edges.len();
+            model.bows.extend(stroke.round.map(|round| Bow::new(round, &stroke.points, first)));
             for (a, b) in corners.clone().zip(corners.skip(1)) {
                 model.edges.push(Edge {
                     a,
@@ -201,6 +206,7 @@ impl Model {
             fields: vec![],
             curves: vec![],
             cusps: vec![],
+            bows: vec![],
             camera: *camera,
             lattice,
             contact: size * CONTACT,
@@ -246,10 +252,9 @@ impl Model {
         let links = links(mesh);
         let open = links.iter().any(|l| l.right == NONE && !body.is_cut(l.a, l.b));
         let faces = self.add_facets(mesh, base, open);
-        let crease = cos_deg(options.crease);
         let round = faithful_origins(mesh, options.tolerance);
         for link in &links {
-            let kind = kind(mesh, link, &faces, &round, crease);
+            let kind = kind(mesh, link, &faces, &round, body.crease);
             if let Some(kind) = kind.filter(|_| !body.is_cut(link.a, link.b)) {
                 let (a, b) = (base + link.a, base + link.b);
                 let hides = |f: u32| f != NONE && faces.facet[f as usize] != NONE;

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::round::Round;
 use crate::geom::{PolyMesh, Tolerance};
 
 /// A solid, or an open surface when its mesh has borders; both sides of an open one hide.
@@ -11,6 +12,8 @@ pub struct Body<'a> {
     pub mesh: &'a PolyMesh,
     /// The caller's number for it; lines carry it.
     pub id: u32,
+    /// Whether facets of a surface without a closed form meet smoothly at any angle.
+    pub smooth: bool,
 }
 
 /// A line in space that is no edge: a figure on a face or a free line. It is hidden like an edge; a face it
@@ -23,6 +26,8 @@ pub struct Stroke {
     pub kind: Kind,
     /// The caller's number for it; lines carry it.
     pub id: u32,
+    /// The circle or ellipse that all its corners lie on, in their order, if it stands for an arc.
+    pub round: Option<Round>,
 }
 
 /// What a line stands for.
@@ -60,7 +65,11 @@ pub struct Scene<'a> {
 impl<'a> Scene<'a> {
     /// Solids numbered in their order, and nothing else.
     pub fn of(meshes: impl IntoIterator<Item = &'a PolyMesh>) -> Scene<'a> {
-        let bodies = meshes.into_iter().zip(0..).map(|(mesh, id)| Body { mesh, id }).collect();
+        let bodies = meshes
+            .into_iter()
+            .zip(0..)
+            .map(|(mesh, id)| Body { mesh, id, smooth: false })
+            .collect();
         Scene { bodies, strokes: vec![] }
     }
 }

@@ -20,7 +20,7 @@ use super::{
     patches::{Patch, Patches, faithful_origins},
     scene::{Kind, Options},
 };
-use crate::geom::{PolyMesh, Surface, trig::cos_deg};
+use crate::geom::{PolyMesh, Surface};
 
 /// A surface is seen edge-on where the sine of the angle to the sight line is below this: rounding leaves
 /// contours that run along rows of corners that far off.
@@ -82,7 +82,7 @@ pub fn add_body(model: &mut Model, body: &Visible, base: u32, options: &Options)
         mesh,
         base,
         id: body.id,
-        crease: cos_deg(options.crease),
+        crease: body.crease,
         patches: Patches::new(mesh, &round),
         front: vec![],
         turns: vec![(NONE, 0.0); mesh.points.len()],

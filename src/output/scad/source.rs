@@ -118,6 +118,11 @@ impl Writer<'_> {
         self.realized.region(shape).ok_or(ScadError::Unrealized { shape: shape.id, what })
     }
 
+    fn mesh(&self, shape: Stretched, what: &'static str) -> Result<String, ScadError> {
+        let unmade = ScadError::Unrealized { shape: shape.id, what };
+        Ok(points::mesh(&self.realized.mesh(shape).ok_or(unmade)?))
+    }
+
     fn extrusion(
         &self,
         shape: Stretched,
@@ -190,10 +195,8 @@ impl Writer<'_> {
             Node::Polygon { points: outer, holes } => {
                 points::polygon(std::iter::once(&**outer).chain(holes.iter().map(|h| &**h)))
             }
-            Node::ImportSolid { .. } => {
-                let unmade = ScadError::Unrealized { shape: shape.id, what: "import" };
-                points::mesh(&self.realized.mesh(shape).ok_or(unmade)?)
-            }
+            Node::ImportSolid { .. } => self.mesh(shape, "import")?,
+            Node::Thickened { .. } | Node::Filled { .. } => self.mesh(shape, "surface")?,
             Node::Text(_) => points::region(&self.region(shape, "text")?),
             Node::ImportProfile { .. } => points::region(&self.region(shape, "import")?),
             _ => NOTHING.to_string(),

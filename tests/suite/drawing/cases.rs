@@ -21,7 +21,7 @@ fn cube() -> Polyhedron {
 }
 
 fn stroke(kind: Kind, points: &[[f64; 3]]) -> Stroke {
-    Stroke { points: points.iter().copied().map(DVec3::from).collect(), kind, id: 7 }
+    Stroke { points: points.iter().copied().map(DVec3::from).collect(), kind, id: 7, round: None }
 }
 
 fn strokes(drawing: &Drawing, class: Class) -> f64 {

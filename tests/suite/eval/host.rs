@@ -6,6 +6,7 @@ use glam::{DMat3, DVec3};
 use katachi::{
     base::{Code, Diagnostic, FileError, Shelf, SourceMap, World},
     eval::{Evaluator, Host, InstanceId, Limits, Loaded, Override, library},
+    geom::Raster,
     shape::{
         Geometry, GeometryError, Measures, Node, ShapeGraph, ShapeId,
         geometry::{Data, Imported, InsideMethod},
@@ -140,6 +141,10 @@ impl Geometry for Bench<'_> {
             Some("json") => Imported::Data(Data::List(vec![Data::Number(1.5), Data::Null])),
             _ => Imported::Solid,
         })
+    }
+
+    fn heights(&self, _: &str) -> Result<Raster, GeometryError> {
+        Ok(Raster::new(2, vec![0.0, 1.0, 2.0, 3.0]).expect("2 x 2 numbers"))
     }
 
     fn read(&self, file: &str) -> Result<Vec<u8>, FileError> {

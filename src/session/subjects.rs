@@ -1,0 +1,84 @@
+//! What a view shows beside its solids: surfaces as bodies and grid lines, curves and outlines of plane figures as lines.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::outline::{Outline, line_of, outlines};
+use crate::{
+    geom::{PolyMesh, Tolerance},
+    output::drawing::{
+        Body, Camera, Drawing, HeightField, Kind, Options, Scene, Stroke, grid_strokes,
+        horizon_lines, visible_lines,
+    },
+    realize::Figure,
+    shape::{ViewSpec, drawing::Hidden},
+};
+
+/// All that one view shows, made.
+pub struct Subjects<'a> {
+    pub solids: Vec<&'a PolyMesh>,
+    pub figures: Vec<Arc<Figure>>,
+    pub axes: Vec<[DVec3; 2]>,
+    /// Figures on faces.
+    pub patterns: Vec<Stroke>,
+}
+
+/// Which pen draws the two sides of a surface.
+const UPPER: Kind = Kind::Pattern;
+const LOWER: Kind = Kind::Free;
+
+impl Subjects<'_> {
+    /// The lines of a view. A surface on its own that is a function of x and y, with nothing hidden to draw, is drawn by
+    /// its horizon.
+    pub fn lines(&self, view: &ViewSpec, camera: &Camera, options: &Options) -> Drawing {
+        let mut drawing = match self.horizon(view, camera) {
+            Some(drawing) => drawing,
+            None => self.scene_lines(view, camera, options),
+        };
+        for line in &mut drawing.lines {
+            line.kind = match line.kind {
+                Kind::Upper => UPPER,
+                Kind::Lower => LOWER,
+                kind => kind,
+            };
+        }
+        drawing
+    }
+
+    fn horizon(&self, view: &ViewSpec, camera: &Camera) -> Option<Drawing> {
+        let others = view.shapes.len() + view.profiles.len() + view.curves.len();
+        let ([surface], 0, Hidden::Off) = (&view.surfaces[..], others, view.hidden) else {
+            return None;
+        };
+        horizon_lines(&HeightField::of(surface)?, camera, 0).ok()
+    }
+
+    fn scene_lines(&self, view: &ViewSpec, camera: &Camera, options: &Options) -> Drawing {
+        let sheets: Vec<PolyMesh> = view.surfaces.iter().map(|s| s.mesh()).collect();
+        let solids = self.solids.iter().map(|&mesh| (mesh, false));
+        let meshes = solids.chain(sheets.iter().map(|mesh| (mesh, true))).zip(0..);
+        let bodies: Vec<Body> =
+            meshes.map(|((mesh, smooth), id)| Body { mesh, id, smooth }).collect();
+        let strokes = self.strokes(view, camera, options.tolerance);
+        visible_lines(&Scene { bodies, strokes }, camera, options)
+    }
+
+    fn strokes(&self, view: &ViewSpec, camera: &Camera, tolerance: Tolerance) -> Vec<Stroke> {
+        let first = self.solids.len() as u32;
+        let grids = view.surfaces.iter().zip(first..);
+        let mut strokes: Vec<Stroke> =
+            grids.flat_map(|(grid, id)| grid_strokes(grid, camera, id)).collect();
+        strokes.extend_from_slice(&self.patterns);
+        let mut next = first + view.surfaces.len() as u32;
+        let free = view.curves.iter().map(|curve| line_of(curve, tolerance));
+        let outlines = self.figures.iter().flat_map(|figure| outlines(figure));
+        let mut add = |line: Outline, kind: Kind| {
+            strokes.push(Stroke { points: line.points, kind, id: next, round: line.round });
+            next += 1;
+        };
+        free.chain(outlines).for_each(|line| add(line, Kind::Free));
+        self.axes.iter().for_each(|line| add(Outline::from(line.to_vec()), Kind::Centre));
+        strokes
+    }
+}
