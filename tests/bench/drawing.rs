@@ -1,10 +1,18 @@
-//! Hidden lines: the scenes whose times are compared with other systems.
+//! The drawings that are timed against other systems by `compare_drawings.py`: the scenes, and a process
+//! that draws one of them each time it is asked to. Only the drawing is timed, not the making of the solids.
 //!
-//! `cargo bench --bench drawing` prints a table; only the drawing is timed, not the making of the solids.
+//! ```sh
+//! cargo bench --bench drawing -- list
+//! cargo bench --bench drawing -- serve torus   # a line in, milliseconds and lengths out
+//! ```
 
-use std::{fs, sync::Arc};
+use std::{
+    fs,
+    io::{self, BufRead, Write},
+    sync::Arc,
+    time::Instant,
+};
 
-use divan::Bencher;
 use glam::{DMat3, DVec3, dvec3};
 use katachi::{
     geom::{Origin, Placement, PolyMesh, Surface, Tolerance, sides, triangulate::triangulate},
@@ -13,33 +21,117 @@ use katachi::{
         boolean::{Tree, evaluate},
         primitive::{cone, cuboid, sphere, torus},
     },
-    output::drawing::{Camera, Options, Scene, View, visible_lines},
+    output::drawing::{Camera, Drawing, HeightField, Options, Scene, horizon_lines, visible_lines},
 };
-use serde_json::Value;
+use serde_json::{Value, json};
 
-fn main() {
-    divan::main();
+/// What is drawn.
+enum Subject {
+    Solids(Vec<Polyhedron>),
+    Graph(HeightField),
 }
 
-fn draw(bencher: Bencher, solids: &[Polyhedron], camera: &Camera) {
-    let scene = Scene::of(solids.iter().map(Polyhedron::mesh));
-    bencher.bench_local(|| visible_lines(&scene, camera, &Options::default()));
+/// A name, and what it stands for.
+type Drawn = (&'static str, fn() -> (Subject, Camera));
+
+const SCENES: &[Drawn] = &[
+    ("city", || (solids(boxes("city")), camera("city"))),
+    ("overlap", || (solids([united(boxes("overlap"))]), camera("overlap"))),
+    ("scale960", || (solids(boxes("scale960")), camera("scale960"))),
+    ("plate", || (solids([plate()]), camera("plate"))),
+    ("torus", || (solids([ring()]), camera("torus"))),
+    ("spheres200", || (solids([united(balls())]), camera("spheres200"))),
+    ("triangles", || (solids([wavy_ring()]), toward(0.3, -1.0, 0.6))),
+    ("graph", || (Subject::Graph(waves()), toward(0.5, -0.866, 0.577))),
+];
+
+fn main() {
+    // Cargo adds `--bench`; without a command there is nothing to do.
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|a| a != "--bench").collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    match arguments[..] {
+        ["list"] => SCENES.iter().for_each(|scene| println!("{}", scene.0)),
+        ["serve", name] => serve(name),
+        _ => println!("list | serve <scene>"),
+    }
+}
+
+/// Draws the scene for each line of the input.
+#[allow(clippy::disallowed_methods, reason = "a benchmark reads the clock")]
+fn serve(name: &str) {
+    let found = SCENES.iter().find(|scene| scene.0 == name);
+    let (subject, camera) = found.unwrap_or_else(|| panic!("no scene `{name}`")).1();
+    for _ in io::stdin().lock().lines() {
+        let start = Instant::now();
+        let drawing = draw(&subject, &camera);
+        let ms = start.elapsed().as_secs_f64() * 1e3;
+        let Drawing { visible, hidden, segments, .. } = drawing;
+        println!(
+            "{}",
+            json!({ "ms": ms, "visible": visible, "hidden": hidden, "segments": segments })
+        );
+        io::stdout().flush().expect("standard output is open");
+    }
+}
+
+fn draw(subject: &Subject, camera: &Camera) -> Drawing {
+    match subject {
+        Subject::Solids(solids) => {
+            let scene = Scene::of(solids.iter().map(Polyhedron::mesh));
+            visible_lines(&scene, camera, &Options::default())
+        }
+        Subject::Graph(field) => horizon_lines(field, camera, 0).expect("seen from above"),
+    }
+}
+
+fn solids(list: impl IntoIterator<Item = Polyhedron>) -> Subject {
+    Subject::Solids(list.into_iter().collect())
+}
+
+fn toward(x: f64, y: f64, z: f64) -> Camera {
+    Camera::parallel(dvec3(x, y, z)).expect("a direction")
+}
+
+fn read(name: &str) -> Value {
+    let text = fs::read_to_string(format!("tests/scenes/{name}.json"));
+    serde_json::from_str(&text.expect("the scene is there")).expect("JSON")
+}
+
+fn list(value: &Value) -> &[Value] {
+    value.as_array().expect("a list")
 }
 
 fn vector(value: &Value) -> DVec3 {
     DVec3::from_array(std::array::from_fn(|i| value[i].as_f64().expect("a number")))
 }
 
+fn camera(name: &str) -> Camera {
+    let camera = read(&format!("{name}.cam"));
+    let (eye, target) = (vector(&camera["eye"]), vector(&camera["target"]));
+    if camera["type"] == "persp" {
+        Camera::perspective(eye, target).expect("apart")
+    } else {
+        Camera::parallel(eye - target).expect("apart").at(target)
+    }
+}
+
 fn boxes(name: &str) -> Vec<Polyhedron> {
-    let text = fs::read_to_string(format!("tests/scenes/{name}.recipe.json"));
-    let recipe: Value = serde_json::from_str(&text.expect("the scene is there")).expect("JSON");
     let placed = |recipe: &Value| {
         let half = vector(&recipe["size"]) / 2.0;
         let rows = [0, 1, 2].map(|i| vector(&recipe["R"][i]));
         let turn = DMat3::from_cols(rows[0], rows[1], rows[2]).transpose();
         cuboid(-half, half).placed(&Placement::new(turn, vector(&recipe["center"])))
     };
-    recipe.as_array().expect("a list").iter().map(placed).collect()
+    list(&read(&format!("{name}.recipe"))).iter().map(placed).collect()
+}
+
+fn balls() -> Vec<Polyhedron> {
+    let placed = |recipe: &Value| {
+        let radius = recipe[3].as_f64().expect("a number");
+        let ball = sphere(radius, sides::sphere(radius, Tolerance::DEFAULT));
+        ball.placed(&Placement::translation(vector(recipe)))
+    };
+    list(&read("spheres200.recipe")).iter().map(placed).collect()
 }
 
 fn united(solids: impl IntoIterator<Item = Polyhedron>) -> Polyhedron {
@@ -47,78 +139,25 @@ fn united(solids: impl IntoIterator<Item = Polyhedron>) -> Polyhedron {
     evaluate(&Tree::Union(leaves)).expect("the union is a solid").solid
 }
 
-/// Numbers in -1..1 by a linear congruence.
-fn random(state: &mut u64) -> f64 {
-    *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-    (*state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-}
-
-#[divan::bench]
-fn city_of_60_cuboids(bencher: Bencher) {
-    let camera = Camera::perspective(dvec3(-80., -130., 110.), dvec3(54., 30., 10.));
-    draw(bencher, &boxes("city"), &camera.expect("apart"));
-}
-
-#[divan::bench]
-fn union_of_12_cuboids(bencher: Bencher) {
-    let camera = Camera::perspective(dvec3(110., -140., 90.), DVec3::ZERO).expect("apart");
-    draw(bencher, &[united(boxes("overlap"))], &camera);
-}
-
-/// A grid of 12 x 10 x 8 cuboids, 20 mm apart, turned anyhow.
-#[divan::bench]
-fn cuboids_960(bencher: Bencher) {
-    let mut state = 7;
-    let mut solids = vec![];
-    for i in 0..960 {
-        let [x, y, z] = [i / 80, i / 8 % 10, i % 8].map(|k| f64::from(k) * 20.0);
-        let mut three = || DVec3::from_array(std::array::from_fn(|_| random(&mut state)));
-        let (half, axis) = (three() * 1.5 + 4.0, three().normalize());
-        let turn = DMat3::from_axis_angle(axis, 3.0 * three().x);
-        let place = Placement::new(turn, dvec3(x - 120.0, y - 100.0, z - 80.0));
-        solids.push(cuboid(-half, half).placed(&place));
-    }
-    draw(bencher, &solids, &Camera::parallel(dvec3(190., -170., 120.)).expect("a direction"));
-}
-
-#[divan::bench]
-fn plate_with_100_holes(bencher: Bencher) {
+fn plate() -> Polyhedron {
     let slab = cuboid(dvec3(-60., -60., 0.), dvec3(60., 60., 10.));
-    let hole = Arc::new(cone(4.0, 4.0, 20.0, 24));
-    let at = |i: usize| -54.0 + 12.0 * i as f64;
+    let hole = Arc::new(cone(4.0, 4.0, 20.0, sides::circle(4.0, Tolerance::DEFAULT)));
+    let at = |i: u32| -54.0 + 12.0 * f64::from(i);
     let holes = (0..100).map(|i| {
         let place = Placement::translation(dvec3(at(i % 10), at(i / 10), -5.0));
         Tree::Placed(place, Box::new(Tree::Leaf(hole.clone())))
     });
     let tree = [Tree::Leaf(Arc::new(slab))].into_iter().chain(holes).collect();
-    let plate = evaluate(&Tree::Difference(tree)).expect("the plate is a solid").solid;
-    draw(bencher, &[plate], &Camera::view(View::Iso));
+    evaluate(&Tree::Difference(tree)).expect("the plate is a solid").solid
 }
 
-#[divan::bench]
-fn torus_at_30_degrees(bencher: Bencher) {
+fn ring() -> Polyhedron {
     let (around, tube) = sides::torus(30.0, 10.0, Tolerance::DEFAULT);
-    let camera = Camera::parallel(dvec3(0.0, -(3f64.sqrt()), 1.0)).expect("a direction");
-    draw(bencher, &[torus(30.0, 10.0, around, tube)], &camera);
+    torus(30.0, 10.0, around, tube)
 }
 
-/// Balls of 6 to 12 mm within a cube of 100 mm.
-#[divan::bench(sample_count = 10)]
-fn union_of_200_spheres(bencher: Bencher) {
-    let mut state = 7;
-    let balls = (0..200).map(|_| {
-        let mut three = || DVec3::from_array(std::array::from_fn(|_| random(&mut state)));
-        let (center, radius) = (three() * 50.0, 9.0 + 3.0 * three().x);
-        let ball = sphere(radius, sides::sphere(radius, Tolerance::DEFAULT));
-        ball.placed(&Placement::translation(center))
-    });
-    let camera = Camera::parallel(dvec3(100., -130., 80.)).expect("a direction");
-    draw(bencher, &[united(balls)], &camera);
-}
-
-/// A wavy ring without a closed form.
-#[divan::bench(sample_count = 20)]
-fn mesh_of_100_000_triangles(bencher: Bencher) {
+/// 100,000 triangles of a wavy ring without a closed form.
+fn wavy_ring() -> Polyhedron {
     let mut ring = torus(30.0, 10.0, 250, 200).into_mesh();
     for p in &mut ring.points {
         let turn = libm::atan2(p.y, p.x);
@@ -130,6 +169,16 @@ fn mesh_of_100_000_triangles(bencher: Bencher) {
         let plane = mesh.add_plane();
         mesh.push_face(&[corners], plane, origin);
     }
-    let solid = Polyhedron::new(mesh).expect("closed");
-    draw(bencher, &[solid], &Camera::parallel(dvec3(0.3, -1.0, 0.6)).expect("a direction"));
+    Polyhedron::new(mesh).expect("closed")
+}
+
+/// 3 sin r / r over 200 x 200 points, r the distance from the middle.
+fn waves() -> HeightField {
+    let axis: Vec<f64> = (0..200).map(|i| f64::from(i) * 0.1 - 9.95).collect();
+    let height = |x: f64, y: f64| {
+        let r = libm::hypot(x, y);
+        3.0 * libm::sin(r) / r
+    };
+    let z = axis.iter().flat_map(|&x| axis.iter().map(move |&y| height(x, y))).collect();
+    HeightField::new(axis.clone(), axis, z).expect("a grid")
 }

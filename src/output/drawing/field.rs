@@ -62,11 +62,11 @@ fn inverse(r: f64) -> f64 {
 impl Field {
     /// The field at a point.
     pub fn local(&self, p: DVec3) -> Local {
-        match *self {
+        match self {
             Field::Flat(plane) => Local::flat(plane.normal),
             Field::Round(surface) => {
-                let (_, normal) = slope(&surface, p);
-                Local { normal, bends: bends(&surface, p, normal) }
+                let (_, normal) = slope(surface, p);
+                Local { normal, bends: bends(surface, p, normal) }
             }
         }
     }
@@ -74,9 +74,9 @@ impl Field {
     /// Signed distance, mm, and unit normal at a point.
     #[inline]
     pub fn slope(&self, p: DVec3) -> (f64, DVec3) {
-        match *self {
+        match self {
             Field::Flat(plane) => (plane.distance(p), plane.normal),
-            Field::Round(surface) => slope(&surface, p),
+            Field::Round(surface) => slope(surface, p),
         }
     }
 }

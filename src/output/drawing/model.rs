@@ -158,8 +158,11 @@ impl Model {
         let mut base = 0;
         for body in &bodies {
             let starts = [model.facets.len(), model.outlines.len(), model.edges.len()];
-            let smooth = smooth::add_body(&mut model, body, base, options);
-            let convex = !smooth && model.add_body(body, base, options);
+            let links = links(&body.mesh);
+            let round = faithful_origins(&body.mesh, &links, options.tolerance);
+            let known = (&links[..], &round[..]);
+            let smooth = smooth::add_body(&mut model, body, base, known);
+            let convex = !smooth && model.add_body(body, base, known);
             let end = base + body.mesh.points.len() as u32;
             model.add_hull(base as usize..end as usize, starts, convex);
             base = end;
@@ -247,14 +250,12 @@ impl Model {
     }
 
     /// Adds a body whose facets stand for themselves; whether it is convex.
-    fn add_body(&mut self, body: &Visible, base: u32, options: &Options) -> bool {
+    fn add_body(&mut self, body: &Visible, base: u32, (links, round): (&[Link], &[bool])) -> bool {
         let (mesh, id) = (&*body.mesh, body.id);
-        let links = links(mesh);
         let open = links.iter().any(|l| l.right == NONE && !body.is_cut(l.a, l.b));
         let faces = self.add_facets(mesh, base, open);
-        let round = faithful_origins(mesh, options.tolerance);
-        for link in &links {
-            let kind = kind(mesh, link, &faces, &round, body.crease);
+        for link in links {
+            let kind = kind(mesh, link, &faces, round, body.crease);
             if let Some(kind) = kind.filter(|_| !body.is_cut(link.a, link.b)) {
                 let (a, b) = (base + link.a, base + link.b);
                 let hides = |f: u32| f != NONE && faces.facet[f as usize] != NONE;

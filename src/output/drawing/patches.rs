@@ -1,9 +1,11 @@
 //! The surfaces of a mesh: which faces belong to one, and which of them are round.
 
+use glam::DVec3;
+
 use super::{
     field::Field,
     lattice::Plane,
-    links::{NONE, each_side},
+    links::{Link, NONE},
 };
 use crate::geom::{PolyMesh, Surface, Tolerance};
 
@@ -27,31 +29,38 @@ pub struct Patches {
     pub list: Vec<Patch>,
     /// The patch of each face.
     pub of_face: Vec<u32>,
+    /// The unit normal of each face, outwards.
+    pub normals: Vec<DVec3>,
 }
 
 /// Which origins are round surfaces that their facets keep to.
-pub fn faithful_origins(mesh: &PolyMesh, tolerance: Tolerance) -> Vec<bool> {
+pub fn faithful_origins(mesh: &PolyMesh, links: &[Link], tolerance: Tolerance) -> Vec<bool> {
     let most = tolerance.mm() * FAITHFUL;
     let flat = |s: &Surface| matches!(s, Surface::Plane | Surface::Facets);
     let mut round: Vec<bool> = mesh.origins().iter().map(|o| !flat(&o.surface)).collect();
     if !round.contains(&true) {
         return round;
     }
-    each_side(mesh, |face, a, b| {
-        let origin = mesh.face(face as usize).origin_index() as usize;
-        if round[origin] {
-            let field = Field::Round(mesh.origins()[origin].surface);
-            let [p, q] = [a, b].map(|i| mesh.points[i as usize]);
-            round[origin] = field.slope((p + q) / 2.0).0.abs() <= most;
+    let fields: Vec<Field> = mesh.origins().iter().map(|o| Field::Round(o.surface)).collect();
+    let origin = |face: u32| mesh.face(face as usize).origin_index() as usize;
+    for link in links {
+        let [p, q] = [link.a, link.b].map(|i| mesh.points[i as usize]);
+        let mut check = |origin: usize| {
+            round[origin] = round[origin] && fields[origin].slope((p + q) / 2.0).0.abs() <= most;
+        };
+        let left = origin(link.left);
+        check(left);
+        if link.right != NONE && origin(link.right) != left {
+            check(origin(link.right));
         }
-    });
+    }
     round
 }
 
 impl Patches {
     /// The surfaces of a mesh, numbered: flat faces by their plane, round ones by surface and outside.
     pub fn new(mesh: &PolyMesh, round: &[bool]) -> Patches {
-        let mut patches = Patches { list: vec![], of_face: vec![] };
+        let mut patches = Patches { list: vec![], of_face: vec![], normals: vec![] };
         let mut of_plane = vec![NONE; mesh.plane_count() as usize];
         let mut of_origin = vec![[NONE; 2]; round.len()];
         for face in mesh.faces() {
@@ -77,6 +86,7 @@ impl Patches {
                 *known
             };
             patches.of_face.push(patch);
+            patches.normals.push(normal);
         }
         patches
     }
@@ -98,10 +108,11 @@ fn numbered(patches: &mut Vec<Patch>, patch: Patch) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
-    use crate::geom::{Origin, trig::unit_circle};
+    use crate::{
+        geom::{Origin, trig::unit_circle},
+        output::drawing::links::links,
+    };
 
     /// A prism in a cylinder of radius 10 about z.
     fn cylinder(sides: u32) -> PolyMesh {
@@ -123,7 +134,7 @@ mod tests {
     #[test]
     fn a_cylinder_has_three_surfaces() {
         let mesh = cylinder(32);
-        let round = faithful_origins(&mesh, Tolerance::DEFAULT);
+        let round = faithful_origins(&mesh, &links(&mesh), Tolerance::DEFAULT);
         assert_eq!(round, [false, true]);
         let patches = Patches::new(&mesh, &round);
         assert_eq!((patches.list.len(), patches.of_face.len()), (3, 34));
@@ -133,8 +144,10 @@ mod tests {
 
     #[test]
     fn coarse_facets_stand_for_themselves() {
-        assert_eq!(faithful_origins(&cylinder(6), Tolerance::DEFAULT), [false, false]);
-        let patches = Patches::new(&cylinder(6), &[false, false]);
+        let prism = cylinder(6);
+        let round = faithful_origins(&prism, &links(&prism), Tolerance::DEFAULT);
+        assert_eq!(round, [false, false]);
+        let patches = Patches::new(&prism, &round);
         assert_eq!(patches.list.len(), 8);
     }
 }

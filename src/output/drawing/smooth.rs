@@ -15,10 +15,10 @@ use super::{
     field::{Constraint, Curve, Field, on_all},
     frustum::Visible,
     lattice::Plane,
-    links::{Link, NONE, each_side, links},
+    links::{Link, NONE, each_side},
     model::{Edge, Facet, Model, Outline},
-    patches::{Patch, Patches, faithful_origins},
-    scene::{Kind, Options},
+    patches::{Patch, Patches},
+    scene::Kind,
 };
 use crate::geom::{PolyMesh, Surface};
 
@@ -66,14 +66,15 @@ struct Smooth<'a> {
 }
 
 /// Adds a body if it has round faces; false if all its facets stand for themselves, as those of an open surface do.
-pub fn add_body(model: &mut Model, body: &Visible, base: u32, options: &Options) -> bool {
+pub fn add_body(
+    model: &mut Model,
+    body: &Visible,
+    base: u32,
+    (links, round): (&[Link], &[bool]),
+) -> bool {
     let mesh = &*body.mesh;
-    let round = faithful_origins(mesh, options.tolerance);
-    if !round.contains(&true) {
-        return false;
-    }
-    let links = links(mesh);
-    if links.iter().any(|l| l.right == NONE && !body.is_cut(l.a, l.b)) {
+    let open = || links.iter().any(|l| l.right == NONE && !body.is_cut(l.a, l.b));
+    if !round.contains(&true) || open() {
         return false;
     }
     let mut smooth = Smooth {
@@ -83,7 +84,7 @@ pub fn add_body(model: &mut Model, body: &Visible, base: u32, options: &Options)
         base,
         id: body.id,
         crease: body.crease,
-        patches: Patches::new(mesh, &round),
+        patches: Patches::new(mesh, round),
         front: vec![],
         turns: vec![(NONE, 0.0); mesh.points.len()],
         fields: vec![],
@@ -485,7 +486,7 @@ impl Smooth<'_> {
         let corners = self.model.sides[sides[0] as usize..sides[1] as usize].iter().flatten();
         let (min, max) = around(corners.map(|&c| self.model.at[c as usize]));
         let face_ref = self.mesh.face(face as usize);
-        let normal = face_ref.area_vector().normalize_or_zero();
+        let normal = self.patches.normals[face as usize];
         let on = self.model.space[(self.base + face_ref.outer()[0]) as usize];
         let plane = Plane { normal, offset: normal.dot(on) };
         let patch = self.patches.list[self.patches.of_face[face as usize] as usize];
