@@ -17,6 +17,8 @@ const FLOORS: &[(&str, &[&str])] = &[
     ("kernel", &["geom"]),
     ("kernel/profile", &["geom"]),
     ("kernel/brep", &["geom"]),
+    ("kernel/field", &["geom"]),
+    ("convert", &["geom", "kernel"]),
     ("realize", &["base", "geom", "shape", "input", "kernel", "convert"]),
     ("output", &["geom"]),
     // OpenSCAD source is the construction tree written out, so its writer reads the shape graph.
