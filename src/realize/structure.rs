@@ -63,9 +63,10 @@ pub fn operands(node: &Node) -> Option<&[ShapeId]> {
 /// What stands under a wrapper, if the node is one.
 pub fn wrapped(node: &Node) -> Option<ShapeId> {
     match node {
-        Node::Transform { child, .. } | Node::Tag { child, .. } | Node::Paint { child, .. } => {
-            Some(*child)
-        }
+        Node::Transform { child, .. }
+        | Node::Tag { child, .. }
+        | Node::Paint { child, .. }
+        | Node::Figured { child, .. } => Some(*child),
         _ => None,
     }
 }

@@ -5,7 +5,12 @@ use std::{cell::RefCell, sync::Arc};
 
 use glam::{DVec2, DVec3};
 
-use super::{axes, cut, outline::outlines, subjects::Subjects};
+use super::{
+    axes, cut,
+    outline::{Outline, Tracer},
+    patterns,
+    subjects::Subjects,
+};
 use crate::{
     base::{Code, Diagnostic, Phase, Span, Watch, watch::during},
     geom::{PolyMesh, Tolerance},
@@ -14,7 +19,7 @@ use crate::{
         drawing::{self, Camera, CameraError, Drawing, Window},
         sheet::{self, Dimension, Figure, Layer, Lettering, Shape, dimension_number},
     },
-    realize::{self, Figure as Outline, Realizer},
+    realize::{self, Realizer},
     shape::{
         Node, ShapeGraph, ShapeId, ViewSpec,
         drawing::{DimSpec, Hidden, Measured, Method, PenName, Projection, Side, StyleSpec},
@@ -68,9 +73,14 @@ impl<'a> Drafter<'a> {
 
     fn make(&self, view: &ViewSpec) -> Result<Drawn, Diagnostic> {
         self.realizer.realize(self.graph, &view.shapes);
-        let figure = |&id: &ShapeId| self.realizer.figure(self.graph, id);
-        let figures = view.profiles.iter().map(figure).collect::<Result<Vec<_>, _>>();
-        let figures = figures.map_err(|e| *e.diagnostic)?;
+        let tracer = Tracer { realizer: self.realizer, graph: self.graph };
+        let mut free = vec![];
+        for curve in &view.curves {
+            free.extend(tracer.curve(curve)?);
+        }
+        for &profile in &view.profiles {
+            free.extend(tracer.profile(profile)?);
+        }
         let mut warnings = vec![];
         let mut solids = vec![];
         for &shape in &view.shapes {
@@ -94,8 +104,9 @@ impl<'a> Drafter<'a> {
                 }
             }
             let meshes: Vec<&PolyMesh> = solids.iter().map(|solid| solid.mesh()).collect();
-            let bounds = bounds(view, &meshes, &figures);
-            let subjects = Subjects { solids: meshes, figures, axes, patterns: vec![] };
+            let patterns = patterns::all(&tracer, &view.shapes, &meshes)?;
+            let bounds = bounds(view, &meshes, &free);
+            let subjects = Subjects { solids: meshes, free, axes, patterns };
             let drawing = subjects.lines(view, &camera, &self.options(view));
             warnings.extend(blank(&drawing, view, bounds));
             let dimensions = view.dims.iter().map(|dim| dimension(dim, view, &camera));
@@ -182,22 +193,23 @@ fn name_of(graph: &ShapeGraph, mut shape: ShapeId) -> Option<Arc<str>> {
     loop {
         match graph.node(shape) {
             Node::Tag { name, .. } => return Some(name.clone()),
-            Node::Transform { child, .. } | Node::Paint { child, .. } => shape = *child,
+            Node::Transform { child, .. }
+            | Node::Paint { child, .. }
+            | Node::Figured { child, .. } => shape = *child,
             _ => return None,
         }
     }
 }
 
-/// The corners of the box around all that a view shows but its curves.
-fn bounds(view: &ViewSpec, meshes: &[&PolyMesh], figures: &[Arc<Outline>]) -> Option<[DVec3; 2]> {
+/// The corners of the box around all that a view shows.
+fn bounds(view: &ViewSpec, meshes: &[&PolyMesh], free: &[Outline]) -> Option<[DVec3; 2]> {
     let mut corners: Option<[DVec3; 2]> = None;
     let mut take = |p: DVec3| {
         corners = Some(corners.map_or([p, p], |[min, max]| [min.min(p), max.max(p)]));
     };
     meshes.iter().flat_map(|mesh| &mesh.points).for_each(|p| take(*p));
     view.surfaces.iter().flat_map(|grid| grid.points()).for_each(|p| take(*p));
-    let lines = figures.iter().flat_map(|figure| outlines(figure));
-    lines.flat_map(|line| line.points).for_each(take);
+    free.iter().flat_map(|line| &line.points).for_each(|p| take(*p));
     corners
 }
 

@@ -20,6 +20,7 @@ mod drafting;
 mod host;
 mod model;
 mod outline;
+mod patterns;
 mod sheet;
 mod subjects;
 

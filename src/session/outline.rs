@@ -3,13 +3,14 @@
 use glam::{DVec2, DVec3};
 
 use crate::{
+    base::{Code, Diagnostic},
     geom::{
-        Contour, EdgeCurve, Placement, Tolerance,
+        Contour, EdgeCurve, Placement, Region, Tolerance,
         trig::{cos_deg, sin_deg},
     },
     output::drawing::Round,
-    realize::Figure,
-    shape::CurveSpec,
+    realize::{Figure, Realizer},
+    shape::{CurveSpec, ShapeGraph, ShapeId},
 };
 
 /// A line in space.
@@ -46,29 +47,97 @@ impl Outline {
 const FINEST: f64 = 0.1;
 const COARSEST: f64 = 15.0;
 
-/// A curve as a line; chords of an arc stay within the tolerance.
-pub fn line_of(curve: &CurveSpec, tolerance: Tolerance) -> Outline {
-    match curve {
-        CurveSpec::Polyline { points, closed } => {
-            let closing = points.first().filter(|_| *closed);
-            points.iter().chain(closing).copied().collect::<Vec<_>>().into()
-        }
-        CurveSpec::Arc { center, x, y, from, to } => {
-            let r = x.length().max(y.length());
-            let half = libm::acos((1.0 - tolerance.mm() / r).clamp(0.0, 1.0)).to_degrees();
-            let parts = ((to - from).abs() / (2.0 * half).clamp(FINEST, COARSEST)).ceil();
-            let point = |i: u32| {
-                let angle = from + (to - from) * f64::from(i) / parts;
-                *center + *x * cos_deg(angle) + *y * sin_deg(angle)
-            };
-            let points = (0..=parts as u32).map(point).collect();
-            Outline { points, round: Some(Round { center: *center, x: *x, y: *y }) }
+/// Lines of one hatching at most.
+const MOST_LINES: f64 = 20_000.0;
+
+/// Makes lines of curves and plane figures.
+pub struct Tracer<'a> {
+    pub realizer: &'a Realizer<'a>,
+    pub graph: &'a ShapeGraph,
+}
+
+impl Tracer<'_> {
+    /// The outlines of a plane figure.
+    pub fn profile(&self, profile: ShapeId) -> Result<Vec<Outline>, Diagnostic> {
+        let figure = self.realizer.figure(self.graph, profile);
+        figure.map(|figure| outlines(&figure)).map_err(|error| *error.diagnostic)
+    }
+
+    /// The lines of a curve; chords of an arc stay within the tolerance.
+    pub fn curve(&self, curve: &CurveSpec) -> Result<Vec<Outline>, Diagnostic> {
+        match curve {
+            CurveSpec::Polyline { points, closed } => {
+                let closing = points.first().filter(|_| *closed);
+                Ok(vec![points.iter().chain(closing).copied().collect::<Vec<_>>().into()])
+            }
+            CurveSpec::Arc { center, x, y, from, to } => {
+                let round = Round { center: *center, x: *x, y: *y };
+                Ok(vec![arc(round, *from, *to, self.realizer.tolerance())])
+            }
+            CurveSpec::Hatch { profile, pitch, angle, placement } => {
+                let figure = self.realizer.figure(self.graph, *profile);
+                let figure = figure.map_err(|error| *error.diagnostic)?;
+                let lines = hatching(&figure.region, *pitch, *angle).map_err(|count| {
+                    let words =
+                        format!("this hatching has {count} lines; the limit is {MOST_LINES}");
+                    Diagnostic::error(Code::Limit, words)
+                        .label(self.graph.origin(*profile), "")
+                        .help("give it a larger `pitch`")
+                })?;
+                let frame = placement.after(&figure.frame);
+                let place = |line: [DVec2; 2]| line.map(|p| frame.point(p.extend(0.0))).to_vec();
+                Ok(lines.into_iter().map(|line| place(line).into()).collect())
+            }
         }
     }
 }
 
+/// An arc between two angles in degrees.
+fn arc(round: Round, from: f64, to: f64, tolerance: Tolerance) -> Outline {
+    let r = round.x.length().max(round.y.length());
+    let half = libm::acos((1.0 - tolerance.mm() / r).clamp(0.0, 1.0)).to_degrees();
+    let parts = ((to - from).abs() / (2.0 * half).clamp(FINEST, COARSEST)).ceil();
+    let point = |i: u32| {
+        let angle = from + (to - from) * f64::from(i) / parts;
+        round.center + round.x * cos_deg(angle) + round.y * sin_deg(angle)
+    };
+    Outline { points: (0..=parts as u32).map(point).collect(), round: Some(round) }
+}
+
+/// Lines at an angle, a pitch apart, one of them through the origin, as far as they are in a region; their number if
+/// they are too many.
+fn hatching(region: &Region, pitch: f64, angle: f64) -> Result<Vec<[DVec2; 2]>, f64> {
+    let along = DVec2::new(cos_deg(angle), sin_deg(angle));
+    let across = along.perp();
+    let edges: Vec<_> = region.contours().flat_map(|contour| contour.edges()).collect();
+    let heights = || edges.iter().map(|edge| across.dot(edge.from) / pitch);
+    let (low, high) = (heights().fold(f64::MAX, f64::min), heights().fold(f64::MIN, f64::max));
+    if edges.is_empty() {
+        return Ok(vec![]);
+    }
+    if high - low > MOST_LINES {
+        return Err((high - low).ceil());
+    }
+    let (mut lines, mut at) = (vec![], low.ceil());
+    while at <= high {
+        let mut cuts: Vec<f64> = edges
+            .iter()
+            .filter_map(|edge| {
+                let [s, t] = [edge.from, edge.to].map(|p| across.dot(p) / pitch - at);
+                let crosses = (s > 0.0) != (t > 0.0);
+                crosses.then(|| along.dot(edge.from.lerp(edge.to, s / (s - t))))
+            })
+            .collect();
+        cuts.sort_by(f64::total_cmp);
+        let line = |pair: &[f64]| [pair[0], pair[1]].map(|x| along * x + across * (at * pitch));
+        lines.extend(cuts.chunks_exact(2).filter(|pair| pair[0] < pair[1]).map(line));
+        at += 1.0;
+    }
+    Ok(lines)
+}
+
 /// The contours of a plane figure in space, each cut where one of its curves ends.
-pub fn outlines(figure: &Figure) -> Vec<Outline> {
+fn outlines(figure: &Figure) -> Vec<Outline> {
     let lines = figure.region.contours().flat_map(contour_lines);
     lines.map(|line| line.placed(&figure.frame)).collect()
 }
@@ -103,4 +172,40 @@ fn contour_lines(contour: &Contour) -> Vec<Outline> {
         Outline { points, round }
     };
     lines.into_iter().map(outline).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::dvec2;
+
+    use super::*;
+    use crate::geom::Piece;
+
+    #[test]
+    fn hatching_fills_a_square_and_leaves_its_hole() {
+        let square = |r: f64| {
+            Contour::polygon(
+                [(-r, -r), (r, -r), (r, r), (-r, r)].map(|(x, y)| dvec2(x, y)).to_vec(),
+            )
+        };
+        let outer = square(5.0);
+        let region = Region { pieces: vec![Piece { outer, holes: vec![square(2.0)] }] };
+        let lines = hatching(&region, 3.0, 0.0).expect("few lines");
+        let length: f64 = lines.iter().map(|[p, q]| p.distance(*q)).sum();
+        assert_eq!((lines.len(), length), (4, 10.0 + 10.0 + 6.0));
+        assert_eq!(hatching(&region, 1e-4, 0.0), Err(100_000.0));
+    }
+
+    #[test]
+    fn runs_of_a_contour_along_a_circle_are_arcs() {
+        let circle = EdgeCurve::Circle { center: DVec2::ZERO, radius: 5.0 };
+        let points = [(5.0, 0.0), (4.0, 3.0), (3.0, 4.0), (0.0, 5.0), (0.0, 0.0)];
+        let contour = Contour {
+            points: points.map(|(x, y)| dvec2(x, y)).to_vec(),
+            curves: vec![circle, circle, circle, EdgeCurve::Line, EdgeCurve::Line],
+        };
+        let lines = contour_lines(&contour);
+        let sizes: Vec<_> = lines.iter().map(|l| (l.points.len(), l.round.is_some())).collect();
+        assert_eq!(sizes, [(4, true), (3, false)]);
+    }
 }

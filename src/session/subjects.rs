@@ -1,24 +1,22 @@
 //! What a view shows beside its solids: surfaces as bodies and grid lines, curves and outlines of plane figures as lines.
 
-use std::sync::Arc;
-
 use glam::DVec3;
 
-use super::outline::{Outline, line_of, outlines};
+use super::outline::Outline;
 use crate::{
-    geom::{PolyMesh, Tolerance},
+    geom::PolyMesh,
     output::drawing::{
         Body, Camera, Drawing, HeightField, Kind, Options, Scene, Stroke, grid_strokes,
         horizon_lines, visible_lines,
     },
-    realize::Figure,
     shape::{ViewSpec, drawing::Hidden},
 };
 
 /// All that one view shows, made.
 pub struct Subjects<'a> {
     pub solids: Vec<&'a PolyMesh>,
-    pub figures: Vec<Arc<Figure>>,
+    /// Curves and the outlines of plane figures.
+    pub free: Vec<Outline>,
     pub axes: Vec<[DVec3; 2]>,
     /// Figures on faces.
     pub patterns: Vec<Stroke>,
@@ -60,25 +58,24 @@ impl Subjects<'_> {
         let meshes = solids.chain(sheets.iter().map(|mesh| (mesh, true))).zip(0..);
         let bodies: Vec<Body> =
             meshes.map(|((mesh, smooth), id)| Body { mesh, id, smooth }).collect();
-        let strokes = self.strokes(view, camera, options.tolerance);
+        let strokes = self.strokes(view, camera);
         visible_lines(&Scene { bodies, strokes }, camera, options)
     }
 
-    fn strokes(&self, view: &ViewSpec, camera: &Camera, tolerance: Tolerance) -> Vec<Stroke> {
+    fn strokes(&self, view: &ViewSpec, camera: &Camera) -> Vec<Stroke> {
         let first = self.solids.len() as u32;
         let grids = view.surfaces.iter().zip(first..);
         let mut strokes: Vec<Stroke> =
             grids.flat_map(|(grid, id)| grid_strokes(grid, camera, id)).collect();
         strokes.extend_from_slice(&self.patterns);
         let mut next = first + view.surfaces.len() as u32;
-        let free = view.curves.iter().map(|curve| line_of(curve, tolerance));
-        let outlines = self.figures.iter().flat_map(|figure| outlines(figure));
-        let mut add = |line: Outline, kind: Kind| {
-            strokes.push(Stroke { points: line.points, kind, id: next, round: line.round });
+        let mut add = |line: &Outline, kind: Kind| {
+            let (points, round) = (line.points.clone(), line.round);
+            strokes.push(Stroke { points, kind, id: next, round });
             next += 1;
         };
-        free.chain(outlines).for_each(|line| add(line, Kind::Free));
-        self.axes.iter().for_each(|line| add(Outline::from(line.to_vec()), Kind::Centre));
+        self.free.iter().for_each(|line| add(line, Kind::Free));
+        self.axes.iter().for_each(|line| add(&line.to_vec().into(), Kind::Centre));
         strokes
     }
 }

@@ -45,6 +45,17 @@ pub enum CurveSpec {
         /// Angle of its end; below `from` when it runs the other way.
         to: f64,
     },
+    /// Parallel lines that fill a plane figure.
+    Hatch {
+        /// The figure.
+        profile: ShapeId,
+        /// From line to line, above 0.
+        pitch: f64,
+        /// Their direction from the x axis of the figure's plane.
+        angle: f64,
+        /// Where the lines stand.
+        placement: Placement,
+    },
 }
 
 impl CurveSpec {
@@ -62,8 +73,43 @@ impl CurveSpec {
                 from: *from,
                 to: *to,
             },
+            CurveSpec::Hatch { profile, pitch, angle, placement: inner } => CurveSpec::Hatch {
+                profile: *profile,
+                pitch: *pitch,
+                angle: *angle,
+                placement: placement.after(inner),
+            },
         }
     }
+}
+
+/// A flat face of a solid.
+#[derive(Clone, PartialEq, Debug)]
+pub enum FaceSpec {
+    /// The outermost one towards a side.
+    Side(Side),
+    /// The largest one with a tag.
+    Tag(Arc<str>),
+    /// The one in a plane.
+    Plane {
+        /// A point of the plane.
+        at: DVec3,
+        /// Outwards; not zero.
+        normal: DVec3,
+    },
+}
+
+/// Figures drawn on a face: their x and y run to the right and upwards seen from outside, from the middle of the face.
+#[derive(Clone, PartialEq, Debug)]
+pub struct FiguresSpec {
+    /// The face.
+    pub face: FaceSpec,
+    /// Plane figures, whose outlines are drawn.
+    pub profiles: Vec<ShapeId>,
+    /// Lines.
+    pub curves: Vec<Arc<CurveSpec>>,
+    /// The call.
+    pub place: Place,
 }
 
 /// One of the usual directions of view.

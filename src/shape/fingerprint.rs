@@ -8,7 +8,10 @@ use std::hash::{Hash, Hasher};
 use glam::{DVec2, DVec3};
 use rustc_hash::FxHasher;
 
-use super::node::{Heal, Node, ShapeId, TextSpec};
+use super::{
+    drawing::CurveSpec,
+    node::{Heal, Node, ShapeId, TextSpec},
+};
 use crate::geom::CurvedGrid;
 
 /// The fingerprint of a node.
@@ -67,6 +70,10 @@ impl Feed {
                 self.surface(surface);
                 self.real(*t);
             }
+            Node::Figured { figures, child } => {
+                (child, &figures.profiles).hash(&mut self.0);
+                figures.curves.iter().for_each(|curve| self.curve(curve));
+            }
             Node::Filled { surface, base } => {
                 self.surface(surface);
                 base.iter().for_each(|z| self.real(*z));
@@ -108,6 +115,20 @@ impl Feed {
     fn surface(&mut self, surface: &CurvedGrid) {
         (surface.size(), surface.closed()).hash(&mut self.0);
         surface.points().iter().for_each(|&p| self.space(p));
+    }
+
+    fn curve(&mut self, curve: &CurveSpec) {
+        match curve {
+            CurveSpec::Polyline { points, .. } => points.iter().for_each(|&p| self.space(p)),
+            CurveSpec::Arc { center, x, y, from, to } => {
+                [*center, *x, *y].into_iter().for_each(|v| self.space(v));
+                self.sized(&[*from, *to], None);
+            }
+            CurveSpec::Hatch { profile, pitch, angle, placement } => {
+                (profile, placement).hash(&mut self.0);
+                self.sized(&[*pitch, *angle], None);
+            }
+        }
     }
 
     fn sized(&mut self, numbers: &[f64], sides: Option<u32>) {

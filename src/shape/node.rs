@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
+use super::drawing::FiguresSpec;
 use crate::geom::{CurvedGrid, Placement, mesh::Color};
 
 /// Names a node of one [`ShapeGraph`](super::ShapeGraph).
@@ -219,6 +220,13 @@ pub enum Node {
         /// The shape.
         child: ShapeId,
     },
+    /// A solid with figures drawn on a face.
+    Figured {
+        /// The figures.
+        figures: Arc<FiguresSpec>,
+        /// The solid.
+        child: ShapeId,
+    },
     /// A shape in a colour; faces that have one keep it.
     Paint {
         /// The colour.
@@ -242,6 +250,7 @@ impl Node {
             | Node::RoundProfile { profile: child, .. }
             | Node::Transform { child, .. }
             | Node::Tag { child, .. }
+            | Node::Figured { child, .. }
             | Node::Paint { child, .. } => std::slice::from_ref(child),
             _ => &[],
         }

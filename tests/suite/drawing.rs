@@ -2,5 +2,7 @@
 
 mod cases;
 mod figures;
+mod language;
 mod rays;
 mod scenes;
+mod sights;

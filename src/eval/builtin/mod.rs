@@ -10,6 +10,7 @@ mod lists;
 mod mathematics;
 mod measures;
 mod pages;
+mod patterns;
 mod placing;
 mod profiles;
 mod random;
@@ -51,6 +52,7 @@ pub fn find(name: &str) -> Option<Native> {
         mathematics::TABLE,
         measures::TABLE,
         pages::TABLE,
+        patterns::TABLE,
         placing::TABLE,
         profiles::TABLE,
         random::TABLE,

@@ -97,7 +97,7 @@ fn subjects(evaluator: &mut Evaluator, args: &Args) -> Outcome<Subjects> {
     Ok(found)
 }
 
-fn side(symbol: Symbol) -> Option<Side> {
+pub(super) fn side(symbol: Symbol) -> Option<Side> {
     Some(match symbol {
         Symbol::Front => Side::Front,
         Symbol::Back => Side::Back,
@@ -307,7 +307,7 @@ fn positive(args: &Args, i: usize, key: &str, value: &Value, unit: Dimension) ->
 }
 
 /// The plane of an argument: a side such as FRONT, or `{ at = ..., normal = ... }`.
-fn plane(args: &Args, i: usize) -> Outcome<(CutPlane, Option<Side>)> {
+pub(super) fn plane(args: &Args, i: usize) -> Outcome<(CutPlane, Option<Side>)> {
     let through_origin = |normal| CutPlane { at: DVec3::ZERO, normal };
     let facing = |side| {
         Some(through_origin(match side {

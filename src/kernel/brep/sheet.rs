@@ -1,7 +1,7 @@
 //! Solids from surfaces given by points in rows: a sheet with a thickness, and what lies between a surface and a floor.
 //!
 //! Offset points go along the mean of the normals of the triangles around a point, weighted by their angles there, so
-//! that the thickness does not depend on how cells are cut.
+//! that the thickness does not depend on how cells are cut; creases are mitred.
 
 use glam::{DVec2, DVec3};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -131,19 +131,28 @@ fn area(points: &[DVec3], [a, b, c]: [u32; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// The mean unit normal at each point.
+/// A crease is mitred up to so many times the distance.
+const MITRE: f64 = 2.0;
+
+/// Where each point goes at distance 1: along the mean normal, at a crease so far that its two sides keep the distance.
 fn normals(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<DVec3> {
-    let mut sums = vec![DVec3::ZERO; points.len()];
+    let mut sums = vec![(DVec3::ZERO, 0.0); points.len()];
     for &corners in triangles {
         let normal = area(points, corners).normalize_or_zero();
         for k in 0..3 {
             let [p, q, r] = [0, 1, 2].map(|i| points[corners[(k + i) % 3] as usize]);
             let (u, v) = (q - p, r - p);
             let angle = libm::atan2(u.cross(v).length(), u.dot(v));
-            sums[corners[k] as usize] += normal * angle;
+            let (sum, angles) = &mut sums[corners[k] as usize];
+            *sum += normal * angle;
+            *angles += angle;
         }
     }
-    sums.into_iter().map(|sum| sum.normalize_or_zero()).collect()
+    let offset = |(sum, angles): (DVec3, f64)| {
+        // The length of the sum is the mean cosine between its direction and the normals.
+        sum.normalize_or_zero() * (angles / sum.length()).clamp(1.0, MITRE)
+    };
+    sums.into_iter().map(offset).collect()
 }
 
 /// The directed edges that have a triangle on their left and none on their right, in the order of the triangles. Fails

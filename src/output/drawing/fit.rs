@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use glam::DVec2;
 
 use super::{
+    LOOSE,
     chain::Chord,
     conic::Ellipse,
     count::Stretch,
@@ -249,10 +250,6 @@ fn fits(nodes: &[Node], tolerance: f64) -> bool {
         (0.0..=1.0).contains(&t) && segment.at(first.at, t).distance(node.at) <= tolerance
     })
 }
-
-/// Cubic curves may be so much farther from the true curve than coincident lines from each other: they only
-/// have to look right and be as long, and each digit costs half as many pieces again.
-const LOOSE: f64 = 100.0;
 
 /// Half the digits of a parameter: differences over it are derivatives to the other half.
 const STEP: f64 = 1e-7;

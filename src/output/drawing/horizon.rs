@@ -102,7 +102,7 @@ impl HeightField {
 }
 
 /// The visible grid lines of a surface: [`Kind::Upper`] where its upper side is seen, [`Kind::Lower`] where its lower side
-/// is. Nothing is drawn hidden.
+/// is. Nothing is drawn hidden; the hidden length is what is left of all grid lines, those behind others included.
 ///
 /// Fails when a point is not before the eye: of a perspective, before the eye turned level.
 ///
@@ -141,38 +141,52 @@ pub fn horizon_lines(
         id,
     };
     horizon.run(level);
-    Ok(finished(horizon.parts, camera))
+    let mut drawing = finished(horizon.parts, camera);
+    let all: f64 = grid_edges(field, camera).map(|(_, p, q)| p.distance(q)).sum();
+    drawing.hidden = (all - drawing.visible).max(0.0);
+    Ok(drawing)
 }
 
 /// All grid lines: seen along z, nothing is in front of anything.
 fn draw_all(field: &HeightField, camera: &Camera, id: u32) -> Drawing {
     let kind = if camera.toward().z > 0.0 { Kind::Upper } else { Kind::Lower };
     let mark = Mark { class: Class::Visible, order: 0, kind, id };
-    let image = |at| camera.image(field.point(at)).0;
-    let (nx, ny) = (field.x.len(), field.y.len());
-    let mut parts = vec![];
-    for i in 0..nx {
-        for j in 0..ny {
-            let far = [(i + 1 < nx).then_some([i + 1, j]), (j + 1 < ny).then_some([i, j + 1])];
-            parts.extend(far.into_iter().flatten().map(|to| {
-                let piece = Piece { from: image([i, j]), to: image(to), mark };
-                Part { line: grid_line([[i, j], to]), piece }
-            }));
-        }
-    }
-    finished(parts, camera)
+    let part = |(line, from, to)| Part { line, piece: Piece { from, to, mark } };
+    finished(grid_edges(field, camera).map(part).collect(), camera)
 }
+
+/// All edges of the grid with their grid lines, in the picture as far as they are in its window.
+fn grid_edges<'a>(
+    field: &'a HeightField,
+    camera: &'a Camera,
+) -> impl Iterator<Item = (GridLine, DVec2, DVec2)> + 'a {
+    let (nx, ny) = (field.x.len(), field.y.len());
+    let places = (0..nx).flat_map(move |i| (0..ny).map(move |j| [i, j]));
+    let edges = places.flat_map(move |[i, j]| {
+        let far = [(i + 1 < nx).then_some([i + 1, j]), (j + 1 < ny).then_some([i, j + 1])];
+        far.into_iter().flatten().map(move |to| [[i, j], to])
+    });
+    let window = camera.window();
+    edges.filter_map(move |ends| {
+        let [p, q] = ends.map(|at| camera.image(field.point(at)).0);
+        let (from, to) = window.map_or(Some((0.0, 1.0)), |w| w.of_segment(p, q))?;
+        Some((grid_line(ends), p.lerp(q, from), p.lerp(q, to)))
+    })
+}
+
+/// A grid line as its direction and number, and a place on it.
+type GridLine = (bool, usize, usize);
 
 /// A visible part of an edge of the grid.
 #[derive(Clone, Copy, Debug)]
 struct Part {
     /// The grid line it belongs to, and its place there.
-    line: (bool, usize, usize),
+    line: GridLine,
     piece: Piece,
 }
 
 /// The grid line of an edge between neighbouring points, the smaller first: its direction, number and place.
-fn grid_line([[i, j], [k, _]]: [[usize; 2]; 2]) -> (bool, usize, usize) {
+fn grid_line([[i, j], [k, _]]: [[usize; 2]; 2]) -> GridLine {
     if i == k { (false, i, j) } else { (true, j, i) }
 }
 
@@ -215,16 +229,17 @@ struct Horizon<'a> {
     id: u32,
 }
 
-/// Cells along an axis from the eye outwards: the number of each, and whether its larger side is the far one.
+/// Cells along an axis from the eye outwards: the number of each, and whether its larger side is the far one. The cell that
+/// the eye is over comes first.
 fn outwards(places: &[f64], eye: Option<f64>, toward: f64) -> Vec<(usize, bool)> {
     let cells = places.len() - 1;
     let split = match eye {
-        Some(eye) => places[1..cells].partition_point(|p| *p <= eye),
+        Some(eye) => places.partition_point(|p| *p <= eye).saturating_sub(1),
         None if toward > 0.0 => cells,
         None => 0,
     };
-    let down = (0..split).rev().map(|i| (i, false));
-    down.chain((split..cells).map(|i| (i, true))).collect()
+    let up = (split..cells).map(|i| (i, true));
+    up.chain((0..split).rev().map(|i| (i, false))).collect()
 }
 
 impl Horizon<'_> {
@@ -238,10 +253,10 @@ impl Horizon<'_> {
                 let first_j = m == 0 || rows[m - 1].1 != up;
                 let [near_i, far_i] = if right { [i, i + 1] } else { [i + 1, i] };
                 let [near_j, far_j] = if up { [j, j + 1] } else { [j + 1, j] };
-                if first_i {
+                if first_i && !(n > 0 && near_i == columns[0].0) {
                     self.edges(&[[[near_i, near_j], [near_i, far_j]]]);
                 }
-                if first_j {
+                if first_j && !(m > 0 && near_j == rows[0].0) {
                     self.edges(&[[[near_i, near_j], [far_i, near_j]]]);
                 }
                 let far = [far_i, far_j];

@@ -51,6 +51,7 @@ mod conic;
 mod convex;
 mod count;
 mod curved_grid;
+mod curves;
 #[allow(clippy::module_inception, reason = "the noun is the file's")]
 mod drawing;
 mod envelope;
@@ -93,6 +94,10 @@ use span::Span;
 /// Lines coincide on paper when they are nearer than this part of the picture's size: corners that set
 /// operations rounded to 2^-29 of the size are a few times that apart.
 const COINCIDENT: f64 = 1e-8;
+
+/// Cubic curves are so much farther from the true curve than lines that coincide from each other: they only have to
+/// look right and be as long, and each digit costs half as many pieces again.
+const LOOSE: f64 = 100.0;
 
 /// The lines of a scene that an eye sees, and those it would see but for what is in front.
 ///
@@ -282,7 +287,8 @@ impl Sheet {
             let arc = Segment::Arc { center, major, minor, from: a.from, to: a.to };
             (Path::of(a.ellipse.at(a.from), arc), a.mark)
         });
-        let all: Vec<(Path, Mark)> = straight.chain(arcs).chain(self.curves).collect();
+        let all: Vec<(Path, Mark)> =
+            straight.chain(arcs).chain(curves::merged(self.curves, tolerance * LOOSE)).collect();
         let length = |class: Class| {
             let of = all.iter().filter(|(_, mark)| mark.class == class);
             of.map(|(path, _)| path.length()).sum::<f64>()
