@@ -64,6 +64,7 @@ mod links;
 mod meet;
 mod merge;
 mod model;
+mod outline;
 mod patches;
 mod scene;
 mod smooth;
@@ -74,6 +75,7 @@ pub use camera::{Camera, CameraError, View, Window};
 pub use curved_grid::{CurvedGrid, GridError, grid_lines};
 pub use drawing::{Class, Drawing, Line, Path, Segment};
 pub use horizon::{HeightField, HorizonError, horizon_lines};
+pub use outline::true_outlines;
 pub use scene::{Body, Hidden, Kind, Method, Options, Scene, Stroke};
 
 use rayon::prelude::*;
