@@ -9,9 +9,6 @@ use crate::{
     output::drawing::Camera,
 };
 
-/// How far centre lines go beyond what they belong to, mm.
-const BEYOND: f64 = 3.0;
-
 /// Axes whose places or directions, in millimetres or as parts of a unit vector, differ by less are one.
 const STEP: f64 = 1e-6;
 
@@ -36,7 +33,7 @@ struct Axis {
 }
 
 /// The centre lines of all meshes, in an order that depends on the places of the axes alone: a line along each axis,
-/// or a cross where the camera looks along it.
+/// or a cross where the camera looks along it. They end where what they belong to ends; a figure lets them go on.
 pub fn center_lines<'a>(
     meshes: impl Iterator<Item = &'a PolyMesh>,
     camera: &Camera,
@@ -105,11 +102,11 @@ impl Axis {
         let middle = at(self.low.midpoint(self.high));
         let sight = camera.sight(middle).normalize();
         if sight.cross(self.direction).length() > ALONG_SIGHT {
-            return vec![[at(self.low - BEYOND), at(self.high + BEYOND)]];
+            return vec![[at(self.low), at(self.high)]];
         }
-        let reach = self.radius + BEYOND;
         let frame = camera.frame();
-        [frame.x_axis, frame.y_axis].map(|d| [middle - d * reach, middle + d * reach]).to_vec()
+        let across = [frame.x_axis, frame.y_axis].map(|d| d * self.radius);
+        across.map(|d| [middle - d, middle + d]).to_vec()
     }
 }
 
@@ -122,7 +119,7 @@ mod tests {
     fn a_cylinder_has_an_axis_or_a_cross() {
         let pin = primitive::cone(5.0, 5.0, 20.0, 32);
         let lines = |view| center_lines([pin.mesh()].into_iter(), &Camera::view(view));
-        assert_eq!(lines(View::Front), [[DVec3::Z * -3.0, DVec3::Z * 23.0]]);
+        assert_eq!(lines(View::Front), [[DVec3::ZERO, DVec3::Z * 20.0]]);
         assert_eq!(lines(View::Top).len(), 2);
         let cuboid = primitive::cuboid(DVec3::ZERO, DVec3::ONE);
         assert!(center_lines([cuboid.mesh()].into_iter(), &Camera::view(View::Top)).is_empty());

@@ -2,17 +2,20 @@
 
 use std::sync::Arc;
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 use crate::{
     base::{Code, Diagnostic, Span},
-    geom::{Placement, PolyMesh, Tolerance},
+    geom::{FaceRef, Origin, Placement, PolyMesh, Tolerance},
     kernel::brep::{
         Polyhedron,
         boolean::{Tree, evaluate},
         primitive::cuboid,
     },
-    output::{drawing::Camera, sheet::Cut},
+    output::{
+        drawing::{Camera, true_outlines},
+        sheet::Cut,
+    },
     shape::drawing::CutPlane,
 };
 
@@ -22,6 +25,9 @@ const MARK: &str = "\u{1}section";
 
 /// How much larger than the solid the block is that is taken away, so that its other faces touch nothing.
 const CLEARANCE: f64 = 1.5;
+
+/// Outlines of cuts and the edges drawn there are each a quarter of the tolerance off the true curve at most.
+const OUTLINE: f64 = 0.5;
 
 /// How far the outline of a cut may seem to be from the edge drawn there, relative to the size of the solid.
 const COINCIDENT: f64 = 1e-7;
@@ -49,8 +55,8 @@ pub fn cut(
         let tree = Tree::Difference(vec![Tree::Leaf(solid.clone()), block]);
         *solid = Arc::new(evaluate(&tree).map_err(|error| error.to_string())?.solid);
         let size = extent(solid.mesh()).1;
-        let tolerance = tolerance.mm().max(size * COINCIDENT);
-        let rings = rings(solid.mesh(), normal, camera);
+        let rings = rings(solid.mesh(), normal, camera, tolerance);
+        let tolerance = (tolerance.mm() * OUTLINE).max(size * COINCIDENT);
         if !rings.is_empty() {
             cuts.push(Cut { rings, body, tolerance });
         }
@@ -87,17 +93,16 @@ fn block(mesh: &PolyMesh, at: DVec3, normal: DVec3, height: f64) -> Tree {
 }
 
 /// The outlines of the cut faces on paper; none when the camera sees the cut from behind.
-fn rings(mesh: &PolyMesh, normal: DVec3, camera: &Camera) -> Vec<Vec<glam::DVec2>> {
-    let marked = |origin: &crate::geom::Origin| origin.tags.iter().any(|tag| **tag == *MARK);
-    let faces = mesh.faces().filter(|face| marked(face.origin()));
-    let point = |i: &u32| mesh.points[*i as usize];
-    let seen = faces.filter(|face| {
-        let here = point(&face.outer()[0]);
-        face.area_vector().dot(normal) > 0.0 && camera.sight(here).dot(normal) > 0.0
-    });
-    seen.flat_map(|face| face.loops())
-        .map(|corners| corners.iter().filter_map(|i| camera.project(point(i))).collect())
-        .collect()
+fn rings(mesh: &PolyMesh, normal: DVec3, camera: &Camera, tolerance: Tolerance) -> Vec<Vec<DVec2>> {
+    let marked = |origin: &Origin| origin.tags.iter().any(|tag| **tag == *MARK);
+    let seen = |face: FaceRef| {
+        let here = mesh.points[face.outer()[0] as usize];
+        marked(face.origin())
+            && face.area_vector().dot(normal) > 0.0
+            && camera.sight(here).dot(normal) > 0.0
+    };
+    let loops = true_outlines(mesh, seen, tolerance).into_iter().flatten();
+    loops.map(|points| points.iter().filter_map(|p| camera.project(*p)).collect()).collect()
 }
 
 /// The warning for a plane that cuts nothing.

@@ -17,12 +17,14 @@ use crate::{
     kernel::profile::{self, TextOptions},
     output::{
         drawing::{self, Camera, CameraError, Drawing, Window},
-        sheet::{self, Dimension, Figure, Layer, Lettering, Shape, dimension_number},
+        sheet::{self, CuttingLine, Dimension, Figure, Layer, Lettering, Shape, dimension_number},
     },
     realize::{self, Realizer},
     shape::{
         Node, ShapeGraph, ShapeId, ViewSpec,
-        drawing::{DimSpec, Hidden, Measured, Method, PenName, Projection, Side, StyleSpec},
+        drawing::{
+            CuttingSpec, DimSpec, Hidden, Measured, Method, PenName, Projection, Side, StyleSpec,
+        },
     },
 };
 
@@ -106,6 +108,7 @@ impl<'a> Drafter<'a> {
             let meshes: Vec<&PolyMesh> = solids.iter().map(|solid| solid.mesh()).collect();
             let patterns = patterns::all(&tracer, &view.shapes, &meshes)?;
             let bounds = bounds(view, &meshes, &free);
+            let shown_axes = axes.iter().filter_map(|ends| on_paper(ends, &camera)).collect();
             let subjects = Subjects { solids: meshes, free, axes, patterns };
             let drawing = subjects.lines(view, &camera, &self.options(view));
             warnings.extend(blank(&drawing, view, bounds));
@@ -113,7 +116,20 @@ impl<'a> Drafter<'a> {
             let dimensions = dimensions.collect::<Result<_, _>>()?;
             let parts = view.shapes.iter().map(|&shape| name_of(self.graph, shape)).collect();
             let style = style(&view.style);
-            Ok(Drawn { figure: Figure { drawing, parts, cuts, dimensions, style }, warnings })
+            let cuttings = view.cuttings.iter().map(|cutting| cutting_line(cutting, &camera));
+            let cuttings = cuttings.collect::<Result<_, _>>()?;
+            let caption = view.caption.as_deref().unwrap_or_default().into();
+            let figure = Figure {
+                drawing,
+                parts,
+                cuts,
+                axes: shown_axes,
+                cuttings,
+                caption,
+                dimensions,
+                style,
+            };
+            Ok(Drawn { figure, warnings })
         })
     }
 
@@ -175,7 +191,7 @@ fn camera(view: &ViewSpec) -> Result<Camera, CameraError> {
     }
 }
 
-fn side_view(side: Side) -> drawing::View {
+pub(super) fn side_view(side: Side) -> drawing::View {
     match side {
         Side::Front => drawing::View::Front,
         Side::Back => drawing::View::Back,
@@ -271,6 +287,33 @@ fn layer(name: PenName) -> Layer {
         PenName::Free => Layer::Free,
     }
 }
+
+/// The images of two points; `None` where one is not in the picture.
+fn on_paper([a, b]: &[DVec3; 2], camera: &Camera) -> Option<[DVec2; 2]> {
+    let seen = |p: &DVec3| {
+        let within = |p: DVec2, w: Window| p.cmpge(w.min).all() && p.cmple(w.max).all();
+        camera.project(*p).filter(|&p| camera.window().is_none_or(|w| within(p, w)))
+    };
+    Some([seen(a)?, seen(b)?])
+}
+
+/// The line of a cutting plane on paper. Fails in views that do not look along the plane.
+fn cutting_line(spec: &CuttingSpec, camera: &Camera) -> Result<CuttingLine, Diagnostic> {
+    let toward = -spec.plane.normal.normalize();
+    let across = toward.dot(camera.toward());
+    if camera.is_perspective() || across.abs() > ALONG {
+        let words = "the cutting plane is not seen as a line: the view does not look along it";
+        let help = "draw the line in a parallel view whose sight line lies in the plane";
+        return Err(at(Code::Degenerate, words, spec.place.0).help(help));
+    }
+    let image = |p: DVec3| camera.project(p).unwrap_or_default();
+    let from = image(spec.plane.at);
+    let toward = (image(spec.plane.at + toward) - from).normalize_or_zero();
+    Ok(CuttingLine { at: from, toward, name: spec.name.to_string() })
+}
+
+/// The sine of the angle to the sight line below which a plane is seen as a line.
+const ALONG: f64 = 1e-9;
 
 /// A dimension on paper. Fails for points that the view does not show apart.
 fn dimension(spec: &DimSpec, view: &ViewSpec, camera: &Camera) -> Result<Dimension, Diagnostic> {

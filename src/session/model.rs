@@ -190,6 +190,8 @@ impl<'s> Model<'s> {
             section: None,
             center_lines: false,
             dims: vec![],
+            cuttings: vec![],
+            caption: None,
             place: Place(span),
         };
         let content = Content::Paper(Paper { name, kind: PaperKind::View(Arc::new(view)), span });

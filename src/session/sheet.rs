@@ -1,12 +1,15 @@
 //! From what a model says of a page to ink on it.
 
-use super::drafting::{Drafter, Letterer};
+use super::drafting::{Drafter, Letterer, side_view};
 use crate::{
     base::{Code, Diagnostic, Phase},
-    output::sheet::{self, Direction, Misfit, Page, Placing, Sheet, Spot, Title, scale_text},
+    output::{
+        drawing::View,
+        sheet::{self, Misfit, Page, Placing, Sheet, Spot, Title, scale_text},
+    },
     shape::{
         PageSpec, ViewSpec,
-        drawing::{Placed, Position, Projection, Side, TitleSpec},
+        drawing::{Placed, Position, Projection, TitleSpec},
     },
 };
 
@@ -70,18 +73,12 @@ fn block(title: &TitleSpec, spec: &PageSpec) -> Title {
     Title { title: title.title.to_string(), fields }
 }
 
-/// The principal direction of a view.
-fn direction(view: &ViewSpec) -> Option<Direction> {
-    let Projection::Side(side) = view.projection else { return None };
-    Some(match side {
-        Side::Front => Direction::Front,
-        Side::Back => Direction::Back,
-        Side::Left => Direction::Left,
-        Side::Right => Direction::Right,
-        Side::Top => Direction::Top,
-        Side::Bottom => Direction::Bottom,
-        Side::Iso | Side::Dimetric => return None,
-    })
+/// The usual direction of a view.
+fn direction(view: &ViewSpec) -> Option<View> {
+    match view.projection {
+        Projection::Side(side) => Some(side_view(side)),
+        _ => None,
+    }
 }
 
 /// The diagnostic for what does not fit.

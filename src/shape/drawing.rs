@@ -290,6 +290,17 @@ pub struct DimSpec {
     pub place: Place,
 }
 
+/// The line of a cutting plane in the view that a section is taken from.
+#[derive(Clone, PartialEq, Debug)]
+pub struct CuttingSpec {
+    /// The plane.
+    pub plane: CutPlane,
+    /// The letter of the section.
+    pub name: Arc<str>,
+    /// The call.
+    pub place: Place,
+}
+
 /// A view of shapes.
 #[derive(Clone, PartialEq, Debug)]
 pub struct ViewSpec {
@@ -319,6 +330,10 @@ pub struct ViewSpec {
     pub center_lines: bool,
     /// Dimensions in the order they were given.
     pub dims: Vec<DimSpec>,
+    /// Lines of cutting planes in the order they were given.
+    pub cuttings: Vec<CuttingSpec>,
+    /// What is written above it.
+    pub caption: Option<Arc<str>>,
     /// The call that made it.
     pub place: Place,
 }

@@ -19,8 +19,8 @@ use crate::{
     shape::{
         CurveSpec, ShapeId, ViewSpec,
         drawing::{
-            CutPlane, DimSpec, Hidden, Measured, Method, PenName, PenSpec, Place, Projection, Side,
-            StyleSpec,
+            CutPlane, CuttingSpec, DimSpec, Hidden, Measured, Method, PenName, PenSpec, Place,
+            Projection, Side, StyleSpec,
         },
     },
 };
@@ -35,6 +35,8 @@ pub const TABLE: &[(&str, Native)] = &[
     ("view.dim.radius", |e, a| dim_round(e, a, false)),
     ("view.dim.diameter", |e, a| dim_round(e, a, true)),
     ("view.dim.angle", dim_angle),
+    ("view.cutting_line", cutting_line),
+    ("view.caption", caption),
 ];
 
 /// `shapes, from, eye, target, fov, window, hidden, style, method`.
@@ -55,6 +57,8 @@ fn view(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
         section: None,
         center_lines: false,
         dims: vec![],
+        cuttings: vec![],
+        caption: None,
         place: Place(evaluator.shown_at(args.call)),
     };
     Ok(Value::Drawing(Arc::new(spec)))
@@ -373,6 +377,8 @@ fn section_of_shapes(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
         section: Some(plane),
         center_lines: false,
         dims: vec![],
+        cuttings: vec![],
+        caption: None,
         place: Place(evaluator.shown_at(args.call)),
     };
     Ok(Value::Drawing(Arc::new(spec)))
@@ -385,7 +391,11 @@ fn changed(
     change: impl FnOnce(&mut ViewSpec),
 ) -> Outcome<Value> {
     let Value::Drawing(view) = args.value(0) else { return args.wrong(0, "a drawing") };
-    let copied = view.shapes.len() + view.surfaces.len() + view.curves.len() + view.dims.len();
+    let copied = view.shapes.len()
+        + view.surfaces.len()
+        + view.curves.len()
+        + view.dims.len()
+        + view.cuttings.len();
     evaluator.tick(copied as u64, args.call)?;
     let mut view = ViewSpec::clone(view);
     change(&mut view);
@@ -407,6 +417,19 @@ fn section_of_view(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
 
 fn center_lines(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
     changed(evaluator, args, |view| view.center_lines = true)
+}
+
+/// `view, plane, name`.
+fn cutting_line(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
+    let ((plane, _), name) = (plane(args, 1)?, args.text(2)?.into());
+    let place = Place(evaluator.shown_at(args.call));
+    changed(evaluator, args, |view| view.cuttings.push(CuttingSpec { plane, name, place }))
+}
+
+/// `view, text`.
+fn caption(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
+    let text = args.text(1)?.into();
+    changed(evaluator, args, |view| view.caption = Some(text))
 }
 
 /// A view with one dimension more, whose text is argument `text`.

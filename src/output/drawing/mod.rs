@@ -65,6 +65,7 @@ mod links;
 mod meet;
 mod merge;
 mod model;
+mod outline;
 mod patches;
 mod round;
 mod scene;
@@ -76,6 +77,7 @@ pub use camera::{Camera, CameraError, View, Window};
 pub use curved_grid::{grid_lines, grid_strokes};
 pub use drawing::{Class, Drawing, Line, Path, Segment};
 pub use horizon::{HeightField, HorizonError, horizon_lines};
+pub use outline::true_outlines;
 pub use round::Round;
 pub use scene::{Body, Hidden, Kind, Method, Options, Scene, Stroke};
 

@@ -26,7 +26,7 @@ const CONTACT: f64 = 1.0 / (1u64 << 26) as f64;
 const DUST: f64 = 1.0 / (1u64 << 38) as f64;
 
 /// Chords are this part of the modeller's tolerance off their curve at most.
-const CHORD: f64 = 0.25;
+pub const CHORD: f64 = 0.25;
 
 /// Bodies of more faces are not treated as convex: asking grows with the square, and so does each comparison.
 const MOST_CONVEX: usize = 32;

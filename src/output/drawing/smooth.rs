@@ -17,6 +17,7 @@ use super::{
     lattice::Plane,
     links::{Link, NONE, each_side},
     model::{Edge, Facet, Model, Outline},
+    outline::FARTHEST,
     patches::{Patch, Patches},
     scene::Kind,
 };
@@ -124,7 +125,7 @@ impl Smooth<'_> {
             let round = fields.iter().any(|f| matches!(f, Field::Round(_)));
             if round && fields.iter().any(|f| f.slope(start).0.abs() > rounding) {
                 let moved = on_all(fields, start);
-                if moved.distance(start) <= 32.0 * self.model.bound {
+                if moved.distance(start) <= FARTHEST * self.model.bound {
                     self.model.move_point(self.base + point as u32, moved);
                 }
             }

@@ -9,23 +9,7 @@ use super::{
     page::{Group, Ink, Page, bounds, moved},
     pen::Style,
 };
-
-/// From which of the principal sides a view is taken.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Direction {
-    /// From the front.
-    Front,
-    /// From behind.
-    Back,
-    /// From the left.
-    Left,
-    /// From the right.
-    Right,
-    /// From above.
-    Top,
-    /// From below.
-    Bottom,
-}
+use crate::output::drawing::View;
 
 /// Where a view is wanted.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -48,8 +32,8 @@ pub struct Placing<'a> {
     pub figure: &'a Figure,
     /// What it is called; may be empty.
     pub name: String,
-    /// From which side it is taken; `None` for pictorial ones.
-    pub direction: Option<Direction>,
+    /// From which side it is taken, if it is one of the usual views.
+    pub direction: Option<View>,
     /// Where.
     pub spot: Spot,
     /// Paper over model; a view beside another takes that one's.
@@ -226,8 +210,8 @@ fn stand(
 }
 
 /// On which side of a view another one stands in third-angle projection, when both unfold in line.
-fn neighbour(of: Direction, view: Direction) -> Option<DVec2> {
-    use Direction::{Back, Bottom, Front, Left, Right, Top};
+fn neighbour(of: View, view: View) -> Option<DVec2> {
+    use View::{Back, Bottom, Front, Left, Right, Top};
     const LEFT: DVec2 = DVec2::NEG_X;
     const RIGHT: DVec2 = DVec2::X;
     Some(match (of, view) {
@@ -289,7 +273,7 @@ mod tests {
         Sheet { size, name: "s".into(), first_angle, frame: true, title: None }
     }
 
-    fn placing(figure: &Figure, direction: Direction, spot: Spot) -> Placing<'_> {
+    fn placing(figure: &Figure, direction: View, spot: Spot) -> Placing<'_> {
         Placing { figure, name: String::new(), direction: Some(direction), spot, scale: 1.0 }
     }
 
@@ -297,8 +281,8 @@ mod tests {
     fn the_view_from_above_stands_below_in_first_angle() {
         let (front, top) = (figure(40.0, 20.0), figure(40.0, 30.0));
         let views = [
-            placing(&front, Direction::Front, Spot::At(dvec2(100.0, 150.0))),
-            placing(&top, Direction::Top, Spot::Beside { other: 0, gap: 10.0 }),
+            placing(&front, View::Front, Spot::At(dvec2(100.0, 150.0))),
+            placing(&top, View::Top, Spot::Beside { other: 0, gap: 10.0 }),
         ];
         let lowest = |first_angle| {
             let (page, misfits) = arrange(&sheet(first_angle), &views, &Unlettered);
@@ -312,7 +296,7 @@ mod tests {
     #[test]
     fn what_leaves_the_frame_is_told() {
         let wide = figure(200.0, 20.0);
-        let views = [placing(&wide, Direction::Front, Spot::At(dvec2(110.0, 100.0)))];
+        let views = [placing(&wide, View::Front, Spot::At(dvec2(110.0, 100.0)))];
         let (_, misfits) = arrange(&sheet(true), &views, &Unlettered);
         let told = Misfit::Overflow { view: 0, area: "frame", side: "right", by: 10.0 };
         assert_eq!(misfits, [told]);

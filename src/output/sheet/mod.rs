@@ -8,6 +8,7 @@
 //! (frame), 7200 (title block).
 
 mod arrange;
+mod cutting;
 mod dimension;
 pub mod dxf;
 mod figure;
@@ -19,7 +20,8 @@ pub mod pdf;
 mod pen;
 pub mod svg;
 
-pub use arrange::{Direction, Misfit, Placing, Sheet, Spot, arrange, scale_text};
+pub use arrange::{Misfit, Placing, Sheet, Spot, arrange, scale_text};
+pub use cutting::CuttingLine;
 pub use dimension::{Dimension, Shape, dimension_number};
 pub use figure::Figure;
 pub use frame::Title;

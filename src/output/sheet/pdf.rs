@@ -1,20 +1,27 @@
-//! PDF: one page, a layer (optional content group) for each class of line, text as outlines.
+//! PDF: one page, a layer (optional content group) for each class of line. Text is drawn by its outlines, so that it
+//! looks the same everywhere, under characters that are not painted but can be searched and copied.
 //!
 //! Written with pdf-writer, the low floor of krilla: drawings need no fonts, images or tagging, but layers, which
 //! krilla does not offer.
 
+use std::io::Write;
+
+use flate2::{Compression, write::ZlibEncoder};
 use glam::DVec2;
 use pdf_writer::{
-    Content, Finish, Name, Pdf, Rect, Ref, TextStr,
-    types::{LineCapStyle, LineJoinStyle},
+    Content, Filter, Finish, Name, Pdf, Rect, Ref, Str, TextStr,
+    types::{LineCapStyle, LineJoinStyle, TextRenderingMode},
 };
 
 use super::{
-    page::{Group, Mark, Page},
+    page::{Group, Letters, Mark, Page},
     pen::{Layer, Pen},
 };
 use crate::{
-    geom::mesh::Color,
+    geom::{
+        mesh::Color,
+        trig::{cos_deg, sin_deg},
+    },
     output::drawing::{Path, Segment},
 };
 
@@ -26,8 +33,13 @@ const PAGES: Ref = Ref::new(2);
 const PAGE: Ref = Ref::new(3);
 const CONTENT: Ref = Ref::new(4);
 const INFO: Ref = Ref::new(5);
+const FONT: Ref = Ref::new(6);
 /// The first layer's number; the others follow.
-const FIRST_LAYER: i32 = 6;
+const FIRST_LAYER: i32 = 7;
+
+/// The name of the font of characters that are not painted, and the height of its capitals for each unit of size.
+const HELVETICA: Name = Name(b"F");
+const CAPITALS: f64 = 0.718;
 
 /// The page as the bytes of a PDF file. It holds no date.
 ///
@@ -53,6 +65,7 @@ pub fn write(page: &Page) -> Vec<u8> {
         properties.pair(Name(layer.name().as_bytes()), reference);
     }
     properties.finish();
+    resources.fonts().pair(HELVETICA, FONT);
     resources.finish();
     sheet.finish();
     for (layer, &reference) in layers.iter().zip(&refs) {
@@ -60,7 +73,10 @@ pub fn write(page: &Page) -> Vec<u8> {
         group.pair(Name(b"Type"), Name(b"OCG"));
         group.pair(Name(b"Name"), TextStr(layer.name()));
     }
-    pdf.stream(CONTENT, &content(page));
+    pdf.type1_font(FONT)
+        .base_font(Name(b"Helvetica"))
+        .encoding_predefined(Name(b"WinAnsiEncoding"));
+    pdf.stream(CONTENT, &deflated(&content(page))).filter(Filter::FlateDecode);
     let mut info = pdf.document_info(INFO);
     info.title(TextStr(&page.title));
     info.producer(TextStr(concat!("katachi ", env!("CARGO_PKG_VERSION"))));
@@ -76,6 +92,12 @@ fn write_catalog(pdf: &mut Pdf, layers: &[Ref]) {
     let mut standard = optional.insert(Name(b"D")).dict();
     standard.insert(Name(b"Order")).array().items(layers);
     standard.insert(Name(b"ON")).array().items(layers);
+}
+
+/// Bytes compressed. A vector takes all that is written to it.
+fn deflated(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = ZlibEncoder::new(vec![], Compression::best());
+    encoder.write_all(bytes).and_then(|()| encoder.finish()).expect("a vector grows")
 }
 
 fn content(page: &Page) -> Vec<u8> {
@@ -101,10 +123,41 @@ fn draw_layer(content: &mut Content, group: &Group, layer: Layer) {
         match &ink.mark {
             Mark::Line(path) => draw_path(content, path),
             Mark::Area(rings) => fill(content, rings),
-            Mark::Text(letters) => fill(content, &letters.outlines),
+            Mark::Text(letters) => write_text(content, letters),
         }
     }
     content.end_marked_content();
+}
+
+/// Outlines, or characters of a font where the text has none, which its own font could not set.
+fn write_text(content: &mut Content, letters: &Letters) {
+    let painted = letters.outlines.is_empty();
+    let (sin, cos) = (sin_deg(letters.angle) as f32, cos_deg(letters.angle) as f32);
+    let (x, y) = xy(letters.at);
+    let mode = if painted { TextRenderingMode::Fill } else { TextRenderingMode::Invisible };
+    content
+        .begin_text()
+        .set_font(HELVETICA, (letters.height / CAPITALS) as f32)
+        .set_text_rendering_mode(mode)
+        .set_text_matrix([cos, sin, -sin, cos, x, y])
+        .show(Str(&latin(&letters.text)))
+        .end_text();
+    fill(content, &letters.outlines);
+}
+
+/// A text in the encoding of the font, `?` for what it does not have.
+fn latin(text: &str) -> Vec<u8> {
+    let byte = |c: char| match c {
+        ' '..='~' | '\u{a1}'..='\u{ff}' => c as u8,
+        '\u{2013}' => 0x96,
+        '\u{2014}' => 0x97,
+        '\u{2018}' | '\u{2019}' => b'\'',
+        '\u{201c}' | '\u{201d}' => b'"',
+        '\u{2026}' => 0x85,
+        '\u{20ac}' => 0x80,
+        _ => b'?',
+    };
+    text.chars().map(byte).collect()
 }
 
 /// Sets width, dashes and colour.
@@ -168,6 +221,9 @@ fn cubics(start: DVec2, arc: &Segment) -> Vec<[DVec2; 3]> {
 }
 
 fn fill(content: &mut Content, rings: &[Vec<DVec2>]) {
+    if rings.is_empty() {
+        return;
+    }
     for ring in rings {
         for (i, &p) in ring.iter().enumerate() {
             let (x, y) = xy(p);
@@ -187,6 +243,11 @@ mod tests {
     use glam::dvec2;
 
     use super::*;
+
+    #[test]
+    fn text_is_written_in_the_encoding_of_the_font() {
+        assert_eq!(latin("\u{d8}20 \u{2013} 90\u{b0} \u{3b1}"), b"\xd820 \x96 90\xb0 ?");
+    }
 
     #[test]
     fn cubics_follow_the_arc() {
