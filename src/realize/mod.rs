@@ -19,6 +19,7 @@ mod files;
 mod heal;
 mod import;
 mod measure;
+mod morphology;
 mod paint;
 mod plane;
 mod primitive;
@@ -265,7 +266,11 @@ fn unwrap(graph: &ShapeGraph, id: ShapeId, paint: Paint) -> Made<Unwrapped> {
 /// Whether making a unit is worth a thread.
 fn is_heavy(graph: &ShapeGraph, id: ShapeId) -> bool {
     match graph.node(id) {
-        Node::Hull(_) | Node::ImportSolid { .. } | Node::Revolve { .. } => true,
+        Node::Hull(_)
+        | Node::ImportSolid { .. }
+        | Node::Revolve { .. }
+        | Node::Offset { .. }
+        | Node::Fillet { .. } => true,
         Node::Extrude { twist, .. } => *twist != 0.0,
         node => graph.kind(id) == Kind::Solid && structure::operands(node).is_some(),
     }

@@ -76,8 +76,11 @@ impl Surroundings {
         self.normals.len()
     }
 
-    /// The figure of the point.
-    pub fn figure(&self, measure: Measure) -> Figure {
+    /// The figure of the point, which may be wanted open.
+    pub fn figure(&self, measure: Measure, open: bool) -> Figure {
+        if open {
+            return self.open(measure);
+        }
         let sharp: Vec<usize> = (0..self.len()).filter(|&i| self.sharp[i]).collect();
         let found = match sharp[..] {
             [] => self.single(measure),

@@ -12,23 +12,30 @@
 
 mod arc;
 mod figure;
+mod fillet;
 mod mitre;
 mod proof;
 mod rings;
 mod surface;
 
+use std::sync::Arc;
+
 use glam::{DMat3, DVec3};
 use thiserror::Error;
 
-pub use self::proof::{Deviation, deviation};
-use self::{figure::Measure, proof::without_strays};
+use self::{figure::Measure, proof::missing};
+pub use self::{
+    fillet::fillet,
+    proof::{Deviation, deviation},
+};
 use crate::{
-    geom::{Placement, PolyMesh, Tolerance},
+    geom::{Placement, PolyMesh, Tolerance, sides},
     kernel::{
         brep::{
             Polyhedron,
-            boolean::{self, BooleanError},
+            boolean::{self, BooleanError, Tree},
             crossing::crossing,
+            primitive,
         },
         field::Polyhedral,
     },
@@ -128,15 +135,47 @@ fn resolved(
     let field = Polyhedral::new(solid.mesh()).expect("a solid that is not empty has a face");
     let crosses = folded || crossing(&mesh).is_some();
     let surface = Polyhedron::new(mesh).expect("figures close along their common edges");
-    let grown = if crosses { boolean::self_union(&surface)?.solid } else { surface };
-    let kept = without_strays(&grown, &field, by, tolerance);
-    let found = deviation(kept.mesh(), &field, by);
-    match found {
-        Some(d) if d.most > tolerance.mm() => {
-            Err(OffsetError::Inexact { found: d.most, allowed: tolerance.mm(), at: d.at })
+    let mut grown = if crosses { boolean::self_union(&surface)?.solid } else { surface };
+    for _ in 0..ROUNDS {
+        let Some(found) = deviation(grown.mesh(), &field, by) else { return Ok(grown) };
+        if found.most <= tolerance.mm() {
+            return Ok(grown);
         }
-        _ => Ok(kept),
+        let balls = missing(solid, grown.mesh(), &field, by, tolerance);
+        if balls.is_empty() {
+            return Err(OffsetError::Inexact {
+                found: found.most,
+                allowed: tolerance.mm(),
+                at: found.at,
+            });
+        }
+        grown = with_balls(grown, &balls, by, tolerance)?;
     }
+    let found = deviation(grown.mesh(), &field, by);
+    match found {
+        Some(Deviation { most, at }) if most > tolerance.mm() => {
+            Err(OffsetError::Inexact { found: most, allowed: tolerance.mm(), at })
+        }
+        _ => Ok(grown),
+    }
+}
+
+/// How often balls are added about points that no cap covers.
+const ROUNDS: usize = 4;
+
+/// A solid with balls added, or for a negative distance taken away.
+fn with_balls(
+    solid: Polyhedron,
+    centers: &[DVec3],
+    by: f64,
+    tolerance: Tolerance,
+) -> Result<Polyhedron, OffsetError> {
+    let ball = Arc::new(primitive::sphere(by.abs(), sides::sphere(by.abs(), tolerance)));
+    let at =
+        |c: &DVec3| Tree::Placed(Placement::translation(*c), Box::new(Tree::Leaf(ball.clone())));
+    let trees = [Tree::Leaf(Arc::new(solid))].into_iter().chain(centers.iter().map(at)).collect();
+    let tree = if by > 0.0 { Tree::Union(trees) } else { Tree::Difference(trees) };
+    Ok(boolean::evaluate(&tree)?.solid)
 }
 
 /// A solid grown (all radii positive) or shrunk (all negative) by an ellipsoid with its radii along the axes,

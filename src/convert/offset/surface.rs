@@ -17,19 +17,31 @@ const FLAT: f64 = 1e-12;
 /// The surface and what is known of it.
 pub(super) struct Raw {
     pub mesh: PolyMesh,
-    /// Whether faces were turned over or figures are open, so that it may cross itself next to them.
+    /// Whether figures are open, so that it may cross itself next to them.
     pub folded: bool,
 }
 
 /// The surface at a distance outwards from a closed mesh.
+///
+/// It is the boundary of pieces that are added up: the solid, what each face sweeps over, and what lies around
+/// convex edges and points. All of them count once, so that the surface winds around what is in any of them.
+/// Where a face or a strip would be turned over, and count against the others, its points are opened.
 pub(super) fn raw(mesh: &PolyMesh, measure: Measure) -> Raw {
     let rings = Rings::of(mesh);
-    let mut builder = Builder::new(mesh, &rings, measure);
-    builder.points();
-    builder.faces();
-    builder.edges();
-    builder.out.drop_unused_points();
-    Raw { mesh: builder.out, folded: builder.folded }
+    let mut open = vec![false; mesh.points.len()];
+    loop {
+        let mut builder = Builder::new(mesh, &rings, measure, &open);
+        builder.points();
+        builder.faces();
+        builder.edges();
+        let Builder { mut out, folded, turned, .. } = builder;
+        let before = open.clone();
+        turned.iter().for_each(|&point| open[point as usize] = true);
+        if open == before {
+            out.drop_unused_points();
+            return Raw { mesh: out, folded };
+        }
+    }
 }
 
 struct Builder<'a> {
@@ -42,6 +54,9 @@ struct Builder<'a> {
     chains: Vec<Vec<u32>>,
     /// Origins by what they stand for.
     origins: FxHashMap<Source, u32>,
+    /// Points to be opened, and those that something turned over touches.
+    open: &'a [bool],
+    turned: Vec<u32>,
     folded: bool,
 }
 
@@ -56,7 +71,12 @@ enum Source {
 }
 
 impl<'a> Builder<'a> {
-    fn new(mesh: &'a PolyMesh, rings: &'a Rings, measure: Measure) -> Builder<'a> {
+    fn new(
+        mesh: &'a PolyMesh,
+        rings: &'a Rings,
+        measure: Measure,
+        open: &'a [bool],
+    ) -> Builder<'a> {
         let count = rings.corners.len();
         Builder {
             mesh,
@@ -66,6 +86,8 @@ impl<'a> Builder<'a> {
             corners: vec![vec![]; count],
             chains: vec![vec![]; count],
             origins: FxHashMap::default(),
+            open,
+            turned: vec![],
             folded: false,
         }
     }
@@ -77,7 +99,7 @@ impl<'a> Builder<'a> {
                 continue;
             }
             let around = Surroundings::of(self.rings, &self.mesh.points, point, self.measure);
-            let figure = around.figure(self.measure);
+            let figure = around.figure(self.measure, self.open[point as usize]);
             self.place(point, &figure);
         }
     }
@@ -148,7 +170,10 @@ impl<'a> Builder<'a> {
         let reach = base.abs().max_element() + self.measure.radius;
         let off = |&i: &u32| (points[i as usize] - base).dot(normal).abs();
         let flat = outline.iter().flatten().all(|i| off(i) <= FLAT * reach.max(1.0) * 16.0);
-        self.folded |= !upright;
+        if !upright {
+            let corners = loops.iter().flatten();
+            self.turned.extend(corners.map(|&c| self.rings.corners[c as usize].point));
+        }
         if upright && flat {
             let plane = self.out.add_plane();
             self.out.push_face(&outline, plane, origin);
@@ -215,16 +240,24 @@ impl<'a> Builder<'a> {
             (Source::Rim(l.min(r), l.max(r)), Surface::Facets)
         };
         let origin = self.origin(source, surface, &faces);
-        self.strip(&near, &far, origin);
+        if !self.strip(&near, &far, axis, origin) {
+            self.turned.extend([v, w]);
+        }
     }
 
-    /// Quadrilaterals and triangles between two chains from the left face to the right one.
-    fn strip(&mut self, near: &[u32], far: &[u32], origin: u32) {
+    /// Quadrilaterals and triangles between two chains from the left face to the right one. Whether all of
+    /// them run along the edge.
+    fn strip(&mut self, near: &[u32], far: &[u32], axis: DVec3, origin: u32) -> bool {
         let (n, m) = (near.len() - 1, far.len() - 1);
-        let (mut i, mut j) = (0, 0);
-        while i < n || j < m {
+        let (mut i, mut j, mut along) = (0, 0, true);
+        loop {
+            let [from, to] = [near[i], far[j]].map(|p| self.out.points[p as usize]);
+            along &= (to - from).dot(axis) > 0.0;
             // Steps of both chains go side by side.
             let (next_near, next_far) = ((i + 1) * m, (j + 1) * n);
+            if i == n && j == m {
+                return along;
+            }
             if i < n && j < m && next_near == next_far {
                 self.quad([far[j], near[i], near[i + 1], far[j + 1]], origin);
                 (i, j) = (i + 1, j + 1);

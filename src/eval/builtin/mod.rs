@@ -9,6 +9,7 @@ mod files;
 mod lists;
 mod mathematics;
 mod measures;
+mod morphology;
 mod pages;
 mod placing;
 mod profiles;
@@ -49,6 +50,7 @@ pub fn find(name: &str) -> Option<Native> {
         files::TABLE,
         mathematics::TABLE,
         measures::TABLE,
+        morphology::TABLE,
         pages::TABLE,
         placing::TABLE,
         profiles::TABLE,
