@@ -77,6 +77,7 @@
 
 pub mod app;
 pub mod base;
+pub mod convert;
 pub mod eval;
 pub mod geom;
 pub mod input;

@@ -14,6 +14,7 @@ pub const LIBRARY: SourceId = SourceId(u32::MAX);
 const PRELUDE: &[(&str, &str)] = &[
     ("std/algebra", include_str!("../../stdlib/algebra.kata")),
     ("std/constants", include_str!("../../stdlib/constants.kata")),
+    ("std/distance", include_str!("../../stdlib/distance.kata")),
     ("std/lists", include_str!("../../stdlib/lists.kata")),
     ("std/mathematics", include_str!("../../stdlib/mathematics.kata")),
     ("std/measures", include_str!("../../stdlib/measures.kata")),

@@ -140,6 +140,12 @@ fn build(
             check_arcs(graph, id, *r, tolerance)?;
             Ok(figure.with_region(profile::round(&figure.region, *r, tolerance)))
         }
+        Node::Fillet { child, convex, concave } => {
+            let figure = part(child)?;
+            check_arcs(graph, id, convex.max(*concave), tolerance)?;
+            let region = profile::fillet(&figure.region, *convex, *concave, tolerance);
+            Ok(figure.with_region(region))
+        }
         Node::Transform { placement, child } => {
             transformed(&*part(child)?, placement).ok_or_else(|| flattened(graph, id))
         }

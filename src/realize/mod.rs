@@ -19,6 +19,7 @@ mod files;
 mod heal;
 mod import;
 mod measure;
+mod morphology;
 mod paint;
 mod plane;
 mod primitive;
@@ -269,7 +270,9 @@ fn is_heavy(graph: &ShapeGraph, id: ShapeId) -> bool {
         | Node::ImportSolid { .. }
         | Node::Revolve { .. }
         | Node::Thickened { .. }
-        | Node::Filled { .. } => true,
+        | Node::Filled { .. }
+        | Node::Offset { .. }
+        | Node::Fillet { .. } => true,
         Node::Extrude { twist, .. } => *twist != 0.0,
         node => graph.kind(id) == Kind::Solid && structure::operands(node).is_some(),
     }

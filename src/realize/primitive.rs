@@ -6,7 +6,7 @@ use super::{
     Realizer, check_size,
     failure::{At, Coded, Made, failure},
     figure::{self, Figure},
-    import,
+    import, morphology,
     paint::Paint,
 };
 use crate::{
@@ -136,6 +136,14 @@ pub fn make(realizer: &Realizer, graph: &ShapeGraph, unit: Stretched) -> Made<Po
         }
         Node::Thickened { surface, t } => sheet::thickened(surface, *t).at(origin),
         Node::Filled { surface, base } => sheet::filled(surface, *base).at(origin),
+        Node::Offset { child, radii } => {
+            let solid = realizer.solid_made(graph, *child, unit.stretch)?;
+            morphology::offset(&solid.polyhedron, *radii, tolerance).at(origin)
+        }
+        Node::Fillet { child, convex, concave } => {
+            let solid = realizer.solid_made(graph, *child, unit.stretch)?;
+            morphology::fillet(&solid.polyhedron, *convex, *concave, tolerance).at(origin)
+        }
         Node::ImportSolid { file, heal } => {
             import::solid(realizer, file, *heal).map_err(|e| figure::placed(e, graph, id))
         }

@@ -130,6 +130,9 @@ impl Structure {
         match graph.node(unit.id) {
             Node::Extrude { .. } | Node::Revolve { .. } => figure_parts(graph, unit),
             _ if graph.kind(unit.id) == Kind::Profile => figure_parts(graph, unit),
+            Node::Offset { child, .. } | Node::Fillet { child, .. } => {
+                unit_of(graph, *child, unit.stretch).into_iter().collect()
+            }
             Node::Hull(list) => {
                 list.iter().filter_map(|&child| unit_of(graph, child, unit.stretch)).collect()
             }

@@ -105,6 +105,14 @@ impl Feed {
                 profile.hash(&mut self.0);
                 self.real(*distance);
             }
+            Node::Offset { child, radii } => {
+                child.hash(&mut self.0);
+                self.space(*radii);
+            }
+            Node::Fillet { child, convex, concave } => {
+                child.hash(&mut self.0);
+                self.sized(&[*convex, *concave], None);
+            }
             Node::Transform { placement, child } => (placement, child).hash(&mut self.0),
             Node::Tag { name, child } => (name, child).hash(&mut self.0),
             Node::Paint { color, child } => (color, child).hash(&mut self.0),

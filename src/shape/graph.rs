@@ -113,9 +113,10 @@ impl ShapeGraph {
             | Node::Difference(list)
             | Node::Intersection(list)
             | Node::Hull(list) => self.common_kind(list),
-            Node::Transform { child, .. } | Node::Tag { child, .. } | Node::Paint { child, .. } => {
-                self.kind(*child)
-            }
+            Node::Transform { child, .. }
+            | Node::Tag { child, .. }
+            | Node::Paint { child, .. }
+            | Node::Fillet { child, .. } => self.kind(*child),
             _ => Kind::Solid,
         }
     }

@@ -200,6 +200,23 @@ pub enum Node {
         r: f64,
     },
 
+    /// A solid grown by a ball or an ellipsoid (all radii positive), or shrunk (all negative).
+    Offset {
+        /// The solid.
+        child: ShapeId,
+        /// The radii along the axes.
+        radii: DVec3,
+    },
+    /// A solid or a profile whose edges or corners are rounded.
+    Fillet {
+        /// The shape.
+        child: ShapeId,
+        /// The radius of what was convex.
+        convex: f64,
+        /// The radius of what was concave.
+        concave: f64,
+    },
+
     /// The union of solids, or of profiles in one plane.
     Union(Arc<[ShapeId]>),
     /// The first less all others; at least one.
@@ -248,6 +265,8 @@ impl Node {
             | Node::Revolve { profile: child, .. }
             | Node::OffsetProfile { profile: child, .. }
             | Node::RoundProfile { profile: child, .. }
+            | Node::Offset { child, .. }
+            | Node::Fillet { child, .. }
             | Node::Transform { child, .. }
             | Node::Tag { child, .. }
             | Node::Figured { child, .. }

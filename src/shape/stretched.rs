@@ -81,7 +81,9 @@ pub(super) fn curves(node: &Node, child: impl Fn(ShapeId) -> u32) -> u32 {
         Node::Text(_)
         | Node::ImportProfile { .. }
         | Node::OffsetProfile { .. }
-        | Node::RoundProfile { .. } => true,
+        | Node::RoundProfile { .. }
+        | Node::Offset { .. }
+        | Node::Fillet { .. } => true,
         _ => false,
     };
     node.children().iter().map(|&id| child(id)).fold(u32::from(own), u32::saturating_add)

@@ -9,6 +9,7 @@ mod files;
 mod lists;
 mod mathematics;
 mod measures;
+mod morphology;
 mod pages;
 mod patterns;
 mod placing;
@@ -51,6 +52,7 @@ pub fn find(name: &str) -> Option<Native> {
         files::TABLE,
         mathematics::TABLE,
         measures::TABLE,
+        morphology::TABLE,
         pages::TABLE,
         patterns::TABLE,
         placing::TABLE,

@@ -23,5 +23,5 @@ pub use offset::offset;
 pub use place::{Affine, placed};
 pub use polygon::polygon;
 pub use primitive::{MOST_SIDES, circle, ellipse, ngon, rect};
-pub use round::round;
+pub use round::{fillet, round};
 pub use text::{Align, Baseline, Text, TextOptions, text};

@@ -25,15 +25,32 @@ const CORE: f64 = 1e-8;
 /// assert!((plate.area() - (200.0 - (4.0 - std::f64::consts::PI) * 4.0)).abs() < 1e-3);
 /// ```
 pub fn round(region: &Region, r: f64, tolerance: Tolerance) -> Region {
-    let Some((low, high)) = bounds(region).filter(|_| r > 0.0) else { return region.clone() };
-    let less = CORE * (r + (high - low).max_element());
-    let closed = offset(region, r, tolerance);
-    let core = offset(&closed, -2.0 * r, tolerance);
-    let wider = offset(&closed, -(2.0 * r - less), tolerance);
-    if holds_all(&core, &wider, less) {
-        return offset(&core, r, tolerance);
+    if r > 0.0 { fillet(region, r, r, tolerance) } else { region.clone() }
+}
+
+/// `region` with convex corners rounded by one radius and concave corners by another (mm), either of which
+/// may be 0: closed by the second, then opened by the first. As [`round`] otherwise.
+///
+/// ```
+/// use glam::dvec2;
+/// use katachi::{geom::Tolerance, kernel::profile::{rect, fillet}};
+/// let fine = Tolerance::new(1e-5).unwrap();
+/// let plate = fillet(&rect(dvec2(20.0, 10.0)).unwrap(), 2.0, 5.0, fine);
+/// assert!((plate.area() - (200.0 - (4.0 - std::f64::consts::PI) * 4.0)).abs() < 1e-3);
+/// ```
+pub fn fillet(region: &Region, convex: f64, concave: f64, tolerance: Tolerance) -> Region {
+    let Some((low, high)) = bounds(region) else { return region.clone() };
+    let less = CORE * (convex + (high - low).max_element());
+    let closed = offset(region, concave, tolerance);
+    let core = offset(&closed, -(convex + concave), tolerance);
+    if convex <= 0.0 {
+        return core;
     }
-    without_short_edges(offset(&wider, r - less, tolerance), 8.0 * less)
+    let wider = offset(&closed, -(convex + concave - less), tolerance);
+    if holds_all(&core, &wider, less) {
+        return offset(&core, convex, tolerance);
+    }
+    without_short_edges(offset(&wider, convex - less, tolerance), 8.0 * less)
 }
 
 /// Whether a core lost no line or point: taking `less` less away adds no contour and no length, but

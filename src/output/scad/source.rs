@@ -6,7 +6,7 @@ use super::{ScadError, Writer, plane, points};
 use crate::{
     geom::{Placement, Region, Tolerance, mesh::Color, sides},
     output::number::Shortest,
-    shape::{Node, ShapeId, Stretched},
+    shape::{Kind, Node, ShapeId, Stretched},
 };
 
 /// What stands for nothing: a union of no children.
@@ -40,6 +40,11 @@ impl Writer<'_> {
                 let words = self.offsets(shape);
                 let depth = self.prefixes(&words, depth);
                 self.shape(self.graph.part(shape, *profile), depth)
+            }
+            Node::Offset { .. } | Node::Fillet { .. } => {
+                let leaf = self.leaf(shape)?;
+                self.line(depth, &leaf);
+                Ok(())
             }
             Node::Transform { placement, child } => {
                 let depth = depth + self.place(placement, depth);
@@ -195,6 +200,11 @@ impl Writer<'_> {
             Node::Polygon { points: outer, holes } => {
                 points::polygon(std::iter::once(&**outer).chain(holes.iter().map(|h| &**h)))
             }
+            Node::Fillet { .. } if self.graph.kind(shape.id) == Kind::Profile => {
+                points::region(&self.region(shape, "fillet")?)
+            }
+            Node::Offset { .. } => self.mesh(shape, "offset")?,
+            Node::Fillet { .. } => self.mesh(shape, "fillet")?,
             Node::ImportSolid { .. } => self.mesh(shape, "import")?,
             Node::Thickened { .. } | Node::Filled { .. } => self.mesh(shape, "surface")?,
             Node::Text(_) => points::region(&self.region(shape, "text")?),

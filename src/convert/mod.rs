@@ -1,0 +1,3 @@
+//! Where kernels meet: solids become fields, and offsets of fields become solids.
+
+pub mod offset;

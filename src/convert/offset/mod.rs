@@ -1,0 +1,208 @@
+//! Solids grown and shrunk by a distance.
+//!
+//! Tatehara et al. grow a solid by the union of balls about its points. Of a polyhedron that is: its faces
+//! moved outwards, cylinders about its convex edges, spheres about its convex points; where edges are concave
+//! the moved faces are cut by each other. [`surface`] makes this as one closed surface with few, exact
+//! pieces: moved faces are flat polygons, arcs have as many chords as the tolerance asks for. Where parts of
+//! the solid come near each other, the surface crosses itself; what it winds around at least once is the
+//! solid grown, found by exact set operations. Shrinking is growing the complement.
+//!
+//! Whether the result is right is not taken on trust: [`Polyhedral`] tells the true distance of its corners,
+//! the middles of its edges and of its triangles.
+
+mod arc;
+mod figure;
+mod fillet;
+mod mitre;
+mod proof;
+mod rings;
+mod surface;
+
+use std::sync::Arc;
+
+use glam::{DMat3, DVec3};
+use thiserror::Error;
+
+use self::{figure::Measure, proof::missing};
+pub use self::{
+    fillet::fillet,
+    proof::{Deviation, deviation},
+};
+use crate::{
+    geom::{Placement, PolyMesh, Tolerance, sides},
+    kernel::{
+        brep::{
+            Polyhedron,
+            boolean::{self, BooleanError, Tree},
+            crossing::crossing,
+            primitive,
+        },
+        field::Polyhedral,
+    },
+};
+
+/// Why a solid cannot be grown or shrunk.
+#[derive(Clone, Debug, Error)]
+pub enum OffsetError {
+    /// The distance is no number.
+    #[error("an offset by {0} mm; it needs a finite distance")]
+    NotFinite(f64),
+    /// The surface needs too many triangles.
+    #[error(
+        "an offset this fine needs {found} corners; the limit is {limit}, which a tolerance of {fitting:.3e} mm meets"
+    )]
+    TooFine {
+        /// Corners needed.
+        found: usize,
+        /// Corners allowed.
+        limit: usize,
+        /// A tolerance that fits, mm.
+        fitting: f64,
+    },
+    /// The set operation that frees the surface of its crossings failed.
+    #[error(transparent)]
+    Boolean(#[from] BooleanError),
+    /// The result is farther from the distance than the tolerance.
+    #[error("the offset is off by {found:.3e} mm near ({}, {}, {}); the tolerance is {allowed} mm", .at.x, .at.y, .at.z)]
+    Inexact {
+        /// The largest deviation found, mm.
+        found: f64,
+        /// The tolerance, mm.
+        allowed: f64,
+        /// Where, mm.
+        at: DVec3,
+    },
+}
+
+/// Shares of the tolerance: what chords may be off their arcs, and what mitred faces and arcs of rims may be
+/// off.
+const CHORDS: f64 = 0.8;
+const JOINTS: f64 = 0.2;
+
+/// The points at most `by` mm from a solid; for a negative `by` the points of the solid at least so far from
+/// its boundary. Curved parts of the result are chords within `tolerance` of the true surface; the solid is
+/// taken as it is, facets and all. Empty if nothing is left.
+///
+/// ```
+/// use glam::{DVec3, dvec3};
+/// use katachi::{convert::offset::offset, geom::Tolerance};
+/// use katachi::kernel::brep::{measure::volume, primitive::cuboid};
+/// let block = cuboid(DVec3::ZERO, dvec3(10.0, 20.0, 30.0));
+/// let grown = offset(&block, 2.0, Tolerance::new(0.005).unwrap()).unwrap();
+/// assert!((volume(&grown) - 11187.49).abs() < 4.0);
+/// let shrunk = offset(&block, -2.0, Tolerance::DEFAULT).unwrap();
+/// assert!((volume(&shrunk) - 6.0 * 16.0 * 26.0).abs() < 1e-9);
+/// assert!(offset(&block, -6.0, Tolerance::DEFAULT).unwrap().is_empty());
+/// ```
+pub fn offset(
+    solid: &Polyhedron,
+    by: f64,
+    tolerance: Tolerance,
+) -> Result<Polyhedron, OffsetError> {
+    if !by.is_finite() {
+        return Err(OffsetError::NotFinite(by));
+    }
+    if by == 0.0 || solid.is_empty() {
+        return Ok(solid.clone());
+    }
+    let radius = by.abs();
+    let measure = Measure {
+        radius,
+        chord: CHORDS * tolerance.mm() / radius,
+        joint: JOINTS * tolerance.mm() / radius,
+    };
+    let raw = match by > 0.0 {
+        true => surface::raw(solid.mesh(), measure),
+        false => {
+            let mut inverse = solid.mesh().clone();
+            inverse.flip();
+            let mut raw = surface::raw(&inverse, measure);
+            raw.mesh.flip();
+            raw
+        }
+    };
+    resolved(solid, raw.mesh, raw.folded, by, tolerance)
+}
+
+/// Frees the surface of its crossings and looks whether it is where it should be.
+fn resolved(
+    solid: &Polyhedron,
+    mesh: PolyMesh,
+    folded: bool,
+    by: f64,
+    tolerance: Tolerance,
+) -> Result<Polyhedron, OffsetError> {
+    let field = Polyhedral::new(solid.mesh()).expect("a solid that is not empty has a face");
+    let crosses = folded || crossing(&mesh).is_some();
+    let surface = Polyhedron::new(mesh).expect("figures close along their common edges");
+    let mut grown = if crosses { boolean::self_union(&surface)?.solid } else { surface };
+    for _ in 0..ROUNDS {
+        let Some(found) = deviation(grown.mesh(), &field, by) else { return Ok(grown) };
+        if found.most <= tolerance.mm() {
+            return Ok(grown);
+        }
+        let balls = missing(solid, grown.mesh(), &field, by, tolerance);
+        if balls.is_empty() {
+            return Err(OffsetError::Inexact {
+                found: found.most,
+                allowed: tolerance.mm(),
+                at: found.at,
+            });
+        }
+        grown = with_balls(grown, &balls, by, tolerance)?;
+    }
+    let found = deviation(grown.mesh(), &field, by);
+    match found {
+        Some(Deviation { most, at }) if most > tolerance.mm() => {
+            Err(OffsetError::Inexact { found: most, allowed: tolerance.mm(), at })
+        }
+        _ => Ok(grown),
+    }
+}
+
+/// How often balls are added about points that no cap covers.
+const ROUNDS: usize = 4;
+
+/// A solid with balls added, or for a negative distance taken away.
+fn with_balls(
+    solid: Polyhedron,
+    centers: &[DVec3],
+    by: f64,
+    tolerance: Tolerance,
+) -> Result<Polyhedron, OffsetError> {
+    let ball = Arc::new(primitive::sphere(by.abs(), sides::sphere(by.abs(), tolerance)));
+    let at =
+        |c: &DVec3| Tree::Placed(Placement::translation(*c), Box::new(Tree::Leaf(ball.clone())));
+    let trees = [Tree::Leaf(Arc::new(solid))].into_iter().chain(centers.iter().map(at)).collect();
+    let tree = if by > 0.0 { Tree::Union(trees) } else { Tree::Difference(trees) };
+    Ok(boolean::evaluate(&tree)?.solid)
+}
+
+/// A solid grown (all radii positive) or shrunk (all negative) by an ellipsoid with its radii along the axes,
+/// mm: space is scaled so that the ellipsoid is the unit ball, and back.
+///
+/// ```
+/// use glam::{DVec3, dvec3};
+/// use katachi::{convert::offset::by_ellipsoid, geom::Tolerance};
+/// use katachi::kernel::brep::{measure::bounds, primitive::cuboid};
+/// let cube = cuboid(DVec3::ZERO, DVec3::splat(4.0));
+/// let grown = by_ellipsoid(&cube, dvec3(1.0, 2.0, 0.5), Tolerance::DEFAULT).unwrap();
+/// assert_eq!(bounds(&grown), Some([dvec3(-1.0, -2.0, -0.5), dvec3(5.0, 6.0, 4.5)]));
+/// ```
+pub fn by_ellipsoid(
+    solid: &Polyhedron,
+    radii: DVec3,
+    tolerance: Tolerance,
+) -> Result<Polyhedron, OffsetError> {
+    let sizes = radii.abs();
+    let scale = |by: DVec3| Placement::new(DMat3::from_diagonal(by), DVec3::ZERO);
+    let (sign, largest) = (radii.x.signum(), sizes.max_element());
+    if !sizes.is_finite() || sizes.min_element() <= 0.0 {
+        return Err(OffsetError::NotFinite(sizes.min_element()));
+    }
+    // The largest radius keeps its length, so that tolerances keep theirs.
+    let shape = sizes / largest;
+    let fine = tolerance;
+    let ball = offset(&solid.placed(&scale(shape.recip())), sign * largest, fine)?;
+    Ok(ball.placed(&scale(shape)))
+}

@@ -1,0 +1,339 @@
+//! The offset surface before it is freed of its crossings: faces moved, edges bridged, points capped.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use rustc_hash::FxHashMap;
+
+use super::{
+    figure::{Figure, Measure, Surroundings},
+    rings::Rings,
+};
+use crate::geom::{Origin, PolyMesh, Surface, triangulate::triangulate_face};
+
+/// Points of a face that are farther than this from its plane, relative to the coordinates, are not of it.
+const FLAT: f64 = 1e-12;
+
+/// The surface and what is known of it.
+pub(super) struct Raw {
+    pub mesh: PolyMesh,
+    /// Whether figures are open, so that it may cross itself next to them.
+    pub folded: bool,
+}
+
+/// The surface at a distance outwards from a closed mesh.
+///
+/// It is the boundary of pieces that are added up: the solid, what each face sweeps over, and what lies around
+/// convex edges and points. All of them count once, so that the surface winds around what is in any of them.
+/// Where a face or a strip would be turned over, and count against the others, its points are opened.
+pub(super) fn raw(mesh: &PolyMesh, measure: Measure) -> Raw {
+    let rings = Rings::of(mesh);
+    let mut open = vec![false; mesh.points.len()];
+    loop {
+        let mut builder = Builder::new(mesh, &rings, measure, &open);
+        builder.points();
+        builder.faces();
+        builder.edges();
+        let Builder { mut out, folded, turned, .. } = builder;
+        let before = open.clone();
+        turned.iter().for_each(|&point| open[point as usize] = true);
+        if open == before {
+            out.drop_unused_points();
+            return Raw { mesh: out, folded };
+        }
+    }
+}
+
+struct Builder<'a> {
+    mesh: &'a PolyMesh,
+    rings: &'a Rings,
+    measure: Measure,
+    out: PolyMesh,
+    /// For each corner the points it becomes, and those along the edge behind it.
+    corners: Vec<Vec<u32>>,
+    chains: Vec<Vec<u32>>,
+    /// Origins by what they stand for.
+    origins: FxHashMap<Source, u32>,
+    /// Points to be opened, and those that something turned over touches.
+    open: &'a [bool],
+    turned: Vec<u32>,
+    folded: bool,
+}
+
+/// What an origin of the offset stands for.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum Source {
+    Face(u32),
+    Edge(u32, u32),
+    /// A rim of many edges between faces of two origins.
+    Rim(u32, u32),
+    Point(u32),
+}
+
+impl<'a> Builder<'a> {
+    fn new(
+        mesh: &'a PolyMesh,
+        rings: &'a Rings,
+        measure: Measure,
+        open: &'a [bool],
+    ) -> Builder<'a> {
+        let count = rings.corners.len();
+        Builder {
+            mesh,
+            rings,
+            measure,
+            out: PolyMesh::default(),
+            corners: vec![vec![]; count],
+            chains: vec![vec![]; count],
+            origins: FxHashMap::default(),
+            open,
+            turned: vec![],
+            folded: false,
+        }
+    }
+
+    fn points(&mut self) {
+        for point in 0..self.mesh.points.len() as u32 {
+            let fan = &self.rings.around[point as usize];
+            if fan.is_empty() {
+                continue;
+            }
+            let around = Surroundings::of(self.rings, &self.mesh.points, point, self.measure);
+            let figure = around.figure(self.measure, self.open[point as usize]);
+            self.place(point, &figure);
+        }
+    }
+
+    /// Puts the figure of a point in its place.
+    fn place(&mut self, point: u32, figure: &Figure) {
+        let (at, first) = (self.mesh.points[point as usize], self.out.points.len() as u32);
+        self.out.points.extend(figure.points.iter().map(|p| at + *p * self.measure.radius));
+        self.folded |= figure.open;
+        let fan = &self.rings.around[point as usize];
+        let moved = |list: &Vec<u32>| list.iter().map(|i| i + first).collect::<Vec<u32>>();
+        for (k, &corner) in fan.iter().enumerate() {
+            self.corners[corner as usize] = moved(&figure.corners[k]);
+            self.chains[corner as usize] = moved(&figure.chains[k]);
+        }
+        if figure.cap.is_empty() {
+            return;
+        }
+        let faces: Vec<u32> = fan.iter().map(|&c| self.rings.corners[c as usize].face).collect();
+        let round = Surface::Sphere { center: at, radius: self.measure.radius };
+        let surface = if figure.open { Surface::Facets } else { round };
+        let origin = self.origin(Source::Point(point), surface, &faces);
+        for triangle in &figure.cap {
+            self.push(&triangle.map(|i| i + first), origin);
+        }
+    }
+
+    fn faces(&mut self) {
+        let mut corner = 0;
+        for face in self.mesh.faces() {
+            let index = face.index() as u32;
+            let mut loops: Vec<Vec<u32>> = vec![];
+            for ring in face.loops() {
+                loops.push((corner..corner + ring.len() as u32).collect());
+                corner += ring.len() as u32;
+            }
+            let surface = self.grown(index);
+            let source = Source::Face(face.origin_index());
+            let origin = self.origin(source, surface, &[index]);
+            self.face(index, &loops, origin);
+        }
+    }
+
+    /// One face: a polygon if it is still flat and nowhere turned over, else its triangles.
+    fn face(&mut self, face: u32, loops: &[Vec<u32>], origin: u32) {
+        let mut triangles = vec![];
+        let source: Vec<&[u32]> = self.mesh.face(face as usize).loops().collect();
+        triangulate_face(&self.mesh.points, &source, &mut triangles);
+        let normal = self.rings.normals[face as usize];
+        let number: FxHashMap<u32, u32> =
+            loops.iter().flatten().map(|&c| (self.point_of(c), c)).collect();
+        let first = |c: u32| self.corners[number[&c] as usize][0];
+        let mut moved: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(first)).collect();
+        for &corner in loops.iter().flatten() {
+            self.spread(corner, loops, &mut moved);
+        }
+        let points = &self.out.points;
+        let area = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|i| points[i as usize]);
+            (b - a).cross(c - a).dot(normal)
+        };
+        let upright = moved.iter().all(|t| area(t) > 0.0);
+        let outline: Vec<Vec<u32>> = loops
+            .iter()
+            .map(|l| l.iter().flat_map(|&c| self.corners[c as usize].iter().copied()).collect())
+            .collect();
+        let base = points[outline[0][0] as usize];
+        let reach = base.abs().max_element() + self.measure.radius;
+        let off = |&i: &u32| (points[i as usize] - base).dot(normal).abs();
+        let flat = outline.iter().flatten().all(|i| off(i) <= FLAT * reach.max(1.0) * 16.0);
+        if !upright {
+            let corners = loops.iter().flatten();
+            self.turned.extend(corners.map(|&c| self.rings.corners[c as usize].point));
+        }
+        if upright && flat {
+            let plane = self.out.add_plane();
+            self.out.push_face(&outline, plane, origin);
+        } else {
+            moved.iter().for_each(|t| self.push(t, origin));
+        }
+    }
+
+    fn point_of(&self, corner: u32) -> u32 {
+        self.rings.corners[corner as usize].point
+    }
+
+    /// Triangles where a corner became several points.
+    fn spread(&self, corner: u32, loops: &[Vec<u32>], out: &mut Vec<[u32; 3]>) {
+        let list = &self.corners[corner as usize];
+        let [first, .., last] = list[..] else { return };
+        out.extend(list.windows(2).skip(1).map(|w| [first, w[0], w[1]]));
+        let ring = loops.iter().find(|l| l.contains(&corner)).expect("its loop");
+        let place = ring.iter().position(|&c| c == corner).expect("in its loop");
+        let next = self.corners[ring[(place + 1) % ring.len()] as usize][0];
+        out.push([first, last, next]);
+    }
+
+    fn edges(&mut self) {
+        for v in 0..self.mesh.points.len() as u32 {
+            for k in 0..self.rings.around[v as usize].len() {
+                let fan = &self.rings.around[v as usize];
+                let (right, left) = (fan[k], fan[(k + 1) % fan.len()]);
+                let w = self.rings.corners[right as usize].before;
+                if v < w {
+                    self.edge([v, w], right, left);
+                }
+            }
+        }
+    }
+
+    /// Bridges the edge from v to w between the faces of two corners at v.
+    fn edge(&mut self, [v, w]: [u32; 2], right: u32, left: u32) {
+        let end = self.rings.end(v, w);
+        let near: Vec<u32> = self.chains[right as usize].iter().rev().copied().collect();
+        let far = self.chains[end as usize].clone();
+        if near.len() == 1 && far.len() == 1 {
+            return;
+        }
+        let faces = [left, right].map(|c| self.rings.corners[c as usize].face);
+        let [a, b] = [v, w].map(|i| self.mesh.points[i as usize]);
+        let axis = (b - a).normalize_or_zero();
+        let round = [&near, &far].iter().all(|chain| {
+            let square = |i: &&u32| {
+                let off = self.out.points[**i as usize] - a;
+                axis.cross(off).length()
+            };
+            chain
+                .iter()
+                .all(|i| (square(&i) - self.measure.radius).abs() <= 1e-9 * self.measure.radius)
+        });
+        let [l, r] = faces.map(|f| self.mesh.face(f as usize).origin_index());
+        let own =
+            faces.map(|f| matches!(self.mesh.face(f as usize).origin().surface, Surface::Plane));
+        let (source, surface) = if round && own == [true; 2] {
+            let radius = self.measure.radius;
+            (Source::Edge(v, w), Surface::Cylinder { point: a, axis, radius })
+        } else {
+            (Source::Rim(l.min(r), l.max(r)), Surface::Facets)
+        };
+        let origin = self.origin(source, surface, &faces);
+        if !self.strip(&near, &far, axis, origin) {
+            self.turned.extend([v, w]);
+        }
+    }
+
+    /// Quadrilaterals and triangles between two chains from the left face to the right one. Whether all of
+    /// them run along the edge.
+    fn strip(&mut self, near: &[u32], far: &[u32], axis: DVec3, origin: u32) -> bool {
+        let (n, m) = (near.len() - 1, far.len() - 1);
+        let (mut i, mut j, mut along) = (0, 0, true);
+        loop {
+            let [from, to] = [near[i], far[j]].map(|p| self.out.points[p as usize]);
+            along &= (to - from).dot(axis) > 0.0;
+            // Steps of both chains go side by side.
+            let (next_near, next_far) = ((i + 1) * m, (j + 1) * n);
+            if i == n && j == m {
+                return along;
+            }
+            if i < n && j < m && next_near == next_far {
+                self.quad([far[j], near[i], near[i + 1], far[j + 1]], origin);
+                (i, j) = (i + 1, j + 1);
+            } else if j >= m || (i < n && next_near < next_far) {
+                self.push(&[far[j], near[i], near[i + 1]], origin);
+                i += 1;
+            } else {
+                self.push(&[far[j], near[i], far[j + 1]], origin);
+                j += 1;
+            }
+        }
+    }
+
+    /// A quadrilateral, as one face if it is flat.
+    fn quad(&mut self, corners: [u32; 4], origin: u32) {
+        let [a, b, c, d] = corners.map(|i| self.out.points[i as usize]);
+        let normal = (c - a).cross(d - b);
+        let reach = [a, b, c, d].iter().fold(1.0f64, |m, p| m.max(p.abs().max_element()));
+        let flat = (b - a).dot(normal).abs() <= 16.0 * FLAT * reach * normal.length();
+        let turned = |p: DVec3, q: DVec3, r: DVec3| (q - p).cross(r - p).dot(normal) > 0.0;
+        let convex = turned(a, b, c) && turned(b, c, d) && turned(c, d, a) && turned(d, a, b);
+        if flat && convex {
+            let plane = self.out.add_plane();
+            return self.out.push_face(&[corners], plane, origin);
+        }
+        let [a, b, c, d] = corners;
+        self.push(&[a, b, c], origin);
+        self.push(&[a, c, d], origin);
+    }
+
+    fn push(&mut self, triangle: &[u32; 3], origin: u32) {
+        let plane = self.out.add_plane();
+        self.out.push_face(&[*triangle], plane, origin);
+    }
+
+    /// The number of an origin with the tags and the colour of some faces.
+    fn origin(&mut self, source: Source, surface: Surface, faces: &[u32]) -> u32 {
+        if let Some(&known) = self.origins.get(&source) {
+            return known;
+        }
+        let parents = || faces.iter().map(|&f| self.mesh.face(f as usize).origin());
+        let mut tags: Vec<Arc<str>> = vec![];
+        for tag in parents().flat_map(|o| &o.tags) {
+            if !tags.contains(tag) {
+                tags.push(tag.clone());
+            }
+        }
+        let color = parents().find_map(|o| o.color);
+        let number = self.out.add_origin(Origin { surface, tags, color });
+        self.origins.insert(source, number);
+        number
+    }
+
+    /// The surface of a face, moved outwards with it.
+    fn grown(&self, face: u32) -> Surface {
+        let on = self.mesh.face(face as usize);
+        let at = self.mesh.points[on.outer()[0] as usize];
+        grown(on.origin().surface, at, self.rings.normals[face as usize], self.measure.radius)
+    }
+}
+
+/// A surface moved by `r` towards the side to which its facet at a point faces.
+fn grown(surface: Surface, at: DVec3, normal: DVec3, r: f64) -> Surface {
+    let away = |from: DVec3| if (at - from).dot(normal) >= 0.0 { r } else { -r };
+    let positive = |radius: f64, make: &dyn Fn(f64) -> Surface| {
+        if radius > 0.0 { make(radius) } else { Surface::Facets }
+    };
+    match surface {
+        Surface::Plane => Surface::Plane,
+        Surface::Sphere { center, radius } => {
+            positive(radius + away(center), &|radius| Surface::Sphere { center, radius })
+        }
+        Surface::Cylinder { point, axis, radius } => {
+            let foot = point + axis * (at - point).dot(axis);
+            positive(radius + away(foot), &|radius| Surface::Cylinder { point, axis, radius })
+        }
+        _ => Surface::Facets,
+    }
+}
