@@ -166,6 +166,13 @@ fn wild_trees_are_sound_and_have_their_volume() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
+#[test]
+#[ignore = "takes minutes; `.ci/run` runs it"]
+fn ten_thousand_wild_trees() {
+    let faults = faults(100..10_100);
+    assert!(faults.is_empty(), "{} of them:\n{}", faults.len(), faults.join("\n"));
+}
+
 /// A ball with whole coordinates whose faces are near those of another.
 #[test]
 fn nearly_equal_spheres() {

@@ -11,7 +11,10 @@ use std::sync::Arc;
 use glam::{DMat3, DVec3};
 
 use super::{BooleanError, Evaluated, Tree, evaluate_operation, expression::Expression};
-use crate::{geom::Placement, kernel::brep::Polyhedron};
+use crate::{
+    geom::Placement,
+    kernel::brep::{Polyhedron, resolution::lost},
+};
 
 /// How far a relative linear part, a product of a matrix and an inverse, may be from a signed axis
 /// permutation and still mean one: rotations by odd angles differ from it by far more, rounding by
@@ -49,6 +52,7 @@ impl Plan {
         (snap, step): (f64, f64),
     ) -> Evaluated {
         let stretch = stretch(&self.frame);
+        let crossing = crossing.or_else(|| lost(&solid));
         Evaluated { solid, snap: self.snap.max(snap * stretch), step: step * stretch, crossing }
     }
 }

@@ -94,7 +94,7 @@ use self::{
     seed::Surroundings,
     space::Space,
 };
-use super::polyhedron::Polyhedron;
+use super::{polyhedron::Polyhedron, resolution::lost};
 use crate::geom::{Placement, PolyMesh};
 
 /// A construction tree of solids.
@@ -123,8 +123,8 @@ pub struct Evaluated {
     /// The step of the lattice of the outermost operation, the largest if groups of it have lattices of
     /// their own, mm; 0 for a leaf alone.
     pub step: f64,
-    /// A place in mm where the result crosses itself because features finer than the lattice could not
-    /// be rounded apart; `None` nearly always.
+    /// A place in mm where the result crosses itself because features finer than the lattice, or than
+    /// coordinates [where it stands](super::resolution), could not be rounded apart; `None` nearly always.
     pub crossing: Option<DVec3>,
 }
 
@@ -181,7 +181,9 @@ fn evaluate_at(tree: &Tree, outer: &Placement) -> Result<Evaluated, BooleanError
     }
     match inner {
         Tree::Leaf(solid) => {
-            Ok(Evaluated { solid: solid.placed(&placement), snap: 0.0, step: 0.0, crossing: None })
+            let solid = solid.placed(&placement);
+            let crossing = lost(&solid);
+            Ok(Evaluated { solid, snap: 0.0, step: 0.0, crossing })
         }
         operation => evaluate_operation(operation, &placement),
     }
