@@ -11,10 +11,7 @@ use std::sync::Arc;
 use glam::{DMat3, DVec3};
 
 use super::{BooleanError, Evaluated, Tree, evaluate_operation, expression::Expression};
-use crate::{
-    geom::Placement,
-    kernel::brep::{Polyhedron, resolution::lost},
-};
+use crate::{geom::Placement, kernel::brep::Polyhedron};
 
 /// How far a relative linear part, a product of a matrix and an inverse, may be from a signed axis
 /// permutation and still mean one: rotations by odd angles differ from it by far more, rounding by
@@ -41,6 +38,9 @@ pub(super) struct Plan {
     pub frame: Placement,
     /// Largest movement of a corner in operations evaluated on the way, mm where the result stands.
     pub snap: f64,
+    /// For a result that is [mended](super::mend), by how many grades the lattice is coarser than it could be;
+    /// every face of what comes out is tested.
+    pub mending: Option<u32>,
 }
 
 impl Plan {
@@ -52,7 +52,6 @@ impl Plan {
         (snap, step): (f64, f64),
     ) -> Evaluated {
         let stretch = stretch(&self.frame);
-        let crossing = crossing.or_else(|| lost(&solid));
         Evaluated { solid, snap: self.snap.max(snap * stretch), step: step * stretch, crossing }
     }
 }
@@ -80,7 +79,7 @@ pub(super) fn plan(tree: &Tree, outer: &Placement) -> Result<Plan, BooleanError>
     let mut walk = Walk { inverse, outer: *outer, leaves: vec![], snap: 0.0 };
     let expression = walk.operation(tree, &Placement::IDENTITY)?;
     let Walk { leaves, snap, .. } = walk;
-    Ok(Plan { leaves, expression, frame: outer.after(&here), snap })
+    Ok(Plan { leaves, expression, frame: outer.after(&here), snap, mending: None })
 }
 
 /// The linear part that most leaves share, the first of them when several do.

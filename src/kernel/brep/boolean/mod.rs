@@ -33,7 +33,8 @@
 //! What is approximate: corners are moved to the lattice on the way in, by at most half a step per
 //! axis ([`Evaluated::snap`]; coordinates written in decimals usually not at all), and new vertices
 //! are rounded on the way out. A corner that no cut touches comes out with the coordinates it had.
-//! Faces that this could make cross others are tested, and put together anew where they do.
+//! Faces that this could make cross others are tested, and put together anew where they do ([`assemble`],
+//! [`flat`], [`mend`]).
 //!
 //! # Sources
 //! Winding vectors and an integer lattice: Trettner, Nehring-Wirxel and Kobbelt, *EMBER: exact mesh
@@ -54,6 +55,7 @@ mod classify;
 mod clusters;
 mod expression;
 mod facet;
+mod flat;
 mod frame;
 mod graph;
 mod grid;
@@ -61,6 +63,7 @@ mod hierarchy;
 mod intersect;
 mod lattice;
 mod locate;
+mod mend;
 mod nesting;
 mod origins;
 mod outline;
@@ -205,11 +208,15 @@ fn evaluate_operation(tree: &Tree, outer: &Placement) -> Result<Evaluated, Boole
         return side_by_side(&groups, outer);
     }
     let plan = frame::plan(tree, outer)?;
-    if let Some(evaluated) = arranged(&plan, true, true)? {
-        return Ok(evaluated);
-    }
-    // A leaf that crosses itself, as it came or after snapping: compare all facets with all.
-    arranged(&plan, false, false)?.ok_or(BooleanError::NotClosed)
+    let found = match arranged(&plan, true, true)? {
+        Some(found) => found,
+        // A leaf that crosses itself, as it came or after snapping: compare all facets with all.
+        None => arranged(&plan, false, false)?.ok_or(BooleanError::NotClosed)?,
+    };
+    Ok(match (found.crossing, lost(&found.solid)) {
+        (Some(_), None) => mend::mended(&plan, found),
+        (crossing, lost) => Evaluated { crossing: crossing.or(lost), ..found },
+    })
 }
 
 /// Evaluates trees that do not touch, each for itself.
@@ -236,6 +243,7 @@ fn arranged(plan: &Plan, trusted: bool, resting: bool) -> Result<Option<Evaluate
     }
     let (min, max) = facet::extent(&plan.leaves);
     let lattice = Lattice::covering(min, max).ok_or(BooleanError::NotFinite)?;
+    let lattice = plan.mending.map_or(lattice, |grades| lattice.coarsened(grades));
     let mut space = Space::default();
     let patches = Patches::of(&plan.leaves, &lattice, resting);
     let (mut facets, sources) = Facets::of(&plan.leaves, &patches, &lattice, &mut space);
