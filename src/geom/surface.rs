@@ -85,6 +85,58 @@ impl Surface {
     }
 }
 
+impl Surface {
+    /// Whether another surface is the same one up to rounding. A cylinder is known by its axis and
+    /// radius, wherever on the axis its point is given and whichever way the axis runs. Planes are alike,
+    /// and so are facets: they stand for themselves.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use katachi::geom::Surface;
+    /// let rod = |z: f64| Surface::Cylinder { point: DVec3::Z * z, axis: DVec3::Z, radius: 2.0 };
+    /// assert!(rod(0.0).is_same(&rod(5.0)));
+    /// ```
+    pub fn is_same(&self, other: &Surface) -> bool {
+        use Surface::{Cone, Cylinder, Facets, Plane, Sphere, Torus};
+        let near = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs().max(b.abs());
+        let along = |a: DVec3, b: DVec3| (a - b).abs().max_element() <= SAME;
+        let across = |a: DVec3, b: DVec3| along(a, b) || along(a, -b);
+        let alike = match (*self, *other) {
+            (Plane, Plane) | (Facets, Facets) => return true,
+            (Cylinder { axis: a, radius: r, .. }, Cylinder { axis: b, radius: s, .. }) => {
+                near(r, s) && across(a, b)
+            }
+            (Cone { axis: a, slope: r, .. }, Cone { axis: b, slope: s, .. }) => {
+                near(r, s) && along(a, b)
+            }
+            (Sphere { radius: r, .. }, Sphere { radius: s, .. }) => near(r, s),
+            (
+                Torus { axis: a, major: q, minor: r, .. },
+                Torus { axis: b, major: s, minor: t, .. },
+            ) => near(q, s) && near(r, t) && across(a, b),
+            _ => false,
+        };
+        let ((p, size), (q, _)) = (self.anchor(), other.anchor());
+        alike && (p - q).length() <= SAME * (size + p.length())
+    }
+
+    /// A point that equal surfaces have in common, and a length to measure its place by, mm. Of planes and
+    /// facets nothing is known.
+    pub fn anchor(&self) -> (DVec3, f64) {
+        match *self {
+            Surface::Plane | Surface::Facets => (DVec3::ZERO, 1.0),
+            Surface::Cylinder { point, axis, radius } => (point - axis * axis.dot(point), radius),
+            Surface::Cone { apex, .. } => (apex, 1.0),
+            Surface::Sphere { center, radius } => (center, radius),
+            Surface::Torus { center, major, .. } => (center, major),
+        }
+    }
+}
+
+/// How far the measures of one surface may be apart, relative to their size, when it was placed in two ways:
+/// rounding stays within a few units of 1e-16 of coordinates, an intended difference is larger by many orders.
+const SAME: f64 = 1e-12;
+
 /// How far a linear map may be from a similarity, relative to its scale, and still carry round
 /// surfaces: products of rotations stay within a few units of 1e-16, an intended distortion is
 /// larger by many orders.
@@ -100,4 +152,27 @@ fn similarity(placement: &Placement) -> Option<f64> {
     let near = lengths.iter().all(|l| (l - square).abs() <= SIMILARITY * square)
         && angles.iter().all(|a| a.abs() <= SIMILARITY * square);
     (near && square > 0.0).then(|| square.sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn surfaces_are_known_by_what_they_are() {
+        let rod =
+            |point: DVec3, axis: DVec3, radius: f64| Surface::Cylinder { point, axis, radius };
+        let here = rod(DVec3::new(1.0, 2.0, 3.0), DVec3::Z, 2.0);
+        assert!(here.is_same(&rod(DVec3::new(1.0, 2.0, -70.0), DVec3::NEG_Z, 2.0)));
+        assert!(!here.is_same(&rod(DVec3::new(1.0, 2.1, 3.0), DVec3::Z, 2.0)));
+        assert!(!here.is_same(&rod(DVec3::new(1.0, 2.0, 3.0), DVec3::X, 2.0)));
+        assert!(!here.is_same(&rod(DVec3::new(1.0, 2.0, 3.0), DVec3::Z, 2.1)));
+        let ball = |x: f64| Surface::Sphere { center: DVec3::X * x, radius: 2.0 };
+        assert!(ball(1.0).is_same(&ball(1.0)) && !ball(1.0).is_same(&ball(1.1)));
+        let cone = |axis: DVec3| Surface::Cone { apex: DVec3::ONE, axis, slope: 0.5 };
+        assert!(
+            cone(DVec3::Z).is_same(&cone(DVec3::Z)) && !cone(DVec3::Z).is_same(&cone(-DVec3::Z))
+        );
+        assert!(!Surface::Plane.is_same(&Surface::Facets));
+    }
 }

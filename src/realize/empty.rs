@@ -19,7 +19,8 @@ const MOST_STEPS: usize = 1 << 16;
 pub fn warnings(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Vec<Diagnostic> {
     let Ok(solid) = realizer.solid(graph, id) else { return vec![] };
     let snap = large_snap(realizer, graph, id, &solid);
-    let crossing = solid.crossing.map(|place| crosses(graph, id, place));
+    let lost = solid.lost.filter(|_| solid.crossing.is_none()).map(|at| too_far(graph, id, at));
+    let crossing = solid.crossing.map(|place| crosses(graph, id, place)).or(lost);
     let empty = if solid.polyhedron.is_empty() { empty_cut(realizer, graph, id) } else { None };
     empty.into_iter().chain(snap).chain(crossing).collect()
 }
@@ -65,6 +66,15 @@ fn crosses(graph: &ShapeGraph, id: ShapeId, DVec3 { x, y, z }: DVec3) -> Diagnos
         .label(graph.origin(id), "")
         .note(format!("near [{x}, {y}, {z}] mm of its set operation"))
         .help("let faces that nearly coincide coincide, or keep them farther apart")
+}
+
+/// The warning for a solid whose features are finer than coordinates where it stands.
+fn too_far(graph: &ShapeGraph, id: ShapeId, DVec3 { x, y, z }: DVec3) -> Diagnostic {
+    let words = "the boundary has features too fine for coordinates where it stands";
+    Diagnostic::warning(Code::Snap, words)
+        .label(graph.origin(id), "")
+        .note(format!("near [{x}, {y}, {z}] mm faces have met or become flat"))
+        .help("move the model to the origin, or make it larger")
 }
 
 /// The outermost difference or intersection of a shape.

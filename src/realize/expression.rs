@@ -48,7 +48,7 @@ pub fn make(realizer: &Realizer, graph: &ShapeGraph, unit: Stretched) -> Made<So
     let evaluated = boolean::evaluate(&tree).at(graph.origin(unit.id))?;
     let snap = evaluated.snap.max(builder.snap);
     let crossing = evaluated.crossing.or(builder.crossing);
-    Ok(Solid { polyhedron: Arc::new(evaluated.solid), snap, crossing })
+    Ok(Solid { polyhedron: Arc::new(evaluated.solid), snap, crossing, lost: None })
 }
 
 struct Builder<'a> {

@@ -45,7 +45,7 @@ use self::{
 use crate::{
     base::{Code, Diagnostic, Phase, Watch, World, watch::during},
     geom::{Placement, Stretch, Tolerance, spherical_projection::Projection},
-    kernel::brep::Polyhedron,
+    kernel::brep::{Polyhedron, resolution::lost},
     shape::{Kind, Measures, Node, ShapeGraph, ShapeId, Stretched},
 };
 
@@ -200,6 +200,7 @@ impl<'w> Realizer<'w> {
         if !wrapped.placement.is_identity() {
             solid.polyhedron = Arc::new(solid.polyhedron.placed(&wrapped.placement));
             solid.snap *= Stretch::of(wrapped.placement.linear()).factor();
+            solid.lost = lost(&solid.polyhedron);
         }
         Ok(solid)
     }

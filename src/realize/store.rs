@@ -17,12 +17,14 @@ pub struct Solid {
     pub snap: f64,
     /// A place in mm, where the set operation stood, in which rounding made the boundary cross itself.
     pub crossing: Option<DVec3>,
+    /// A place in mm in which coordinates cannot hold it where it was placed last.
+    pub lost: Option<DVec3>,
 }
 
 impl Solid {
     /// A solid that no set operation has touched.
     pub fn exact(polyhedron: Polyhedron) -> Solid {
-        Solid { polyhedron: Arc::new(polyhedron), snap: 0.0, crossing: None }
+        Solid { polyhedron: Arc::new(polyhedron), snap: 0.0, crossing: None, lost: None }
     }
 }
 

@@ -5,6 +5,8 @@ use std::sync::Arc;
 use glam::{DMat3, DVec2, DVec3, dvec3};
 
 use super::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use crate::{
     base::{Shelf, Span, watch::Unwatched},
     geom::mesh::Color,
@@ -159,4 +161,41 @@ fn a_curve_that_is_bent_again_keeps_the_tolerance() {
     });
     let worst = middles.map(error).fold(0.0, f64::max);
     assert!(worst <= bench.realizer.tolerance().mm(), "{worst}");
+}
+
+/// Counts the units that are made.
+#[derive(Default)]
+struct Counted(AtomicUsize);
+
+impl Watch for Counted {
+    fn enter(&self, _: Phase) {}
+    fn leave(&self) {}
+    fn expect(&self, _: usize) {}
+    fn step(&self) {
+        self.0.fetch_add(1, Ordering::Relaxed);
+    }
+}
+
+/// A node is made once in a run: by whichever name, wherever it is placed, however often it is asked about.
+#[test]
+fn a_node_is_made_once() {
+    let counted = Counted::default();
+    let mut graph = ShapeGraph::default();
+    let mut add = |node: Node| graph.add(node, Span::default());
+    let cube = |low: f64| Node::Box { min: DVec3::splat(low), max: DVec3::splat(low + 2.0) };
+    let (a, b) = (add(cube(0.0)), add(cube(1.0)));
+    let cut = add(Node::Difference(Arc::new([a, b])));
+    let again = add(Node::Difference(Arc::new([a, b])));
+    let moved =
+        |child, x| Node::Transform { placement: Placement::translation(DVec3::X * x), child };
+    let copies = [0.0, 5.0, 10.0, 15.0].map(|x| add(moved(cut, x)));
+    let row = add(Node::Union(Arc::new(copies)));
+    assert_eq!(cut, again);
+    let realizer = Realizer::new(&Shelf(&[]), &counted, None);
+    let made = || counted.0.load(Ordering::Relaxed);
+    let volume = |id| realizer.measures(&graph, id).expect("made").volume;
+    assert_eq!((volume(cut), made()), (7.0, 3));
+    assert_eq!((volume(copies[2]), made()), (7.0, 3));
+    assert_eq!((volume(row), made()), (28.0, 4));
+    assert_eq!((volume(row), volume(cut), made()), (28.0, 7.0, 4));
 }

@@ -7,7 +7,9 @@ mod random;
 mod scales;
 mod solids;
 mod soundness;
+mod threads;
 mod tiny;
+mod touching;
 mod wild;
 
 pub use random::Random;

@@ -12,6 +12,7 @@ pub mod hull;
 pub mod measure;
 pub mod polyhedron;
 pub mod primitive;
+pub mod resolution;
 pub mod revolve;
 mod ridge;
 pub mod sheet;

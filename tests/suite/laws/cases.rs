@@ -16,17 +16,24 @@ fn solid(tree: &Tree) -> Polyhedron {
 }
 
 /// The angles by which the cases are turned, degrees.
-const TURN: [f64; 3] = [17.0, 23.0, 41.0];
+const TURNS: [[f64; 3]; 5] = [
+    [17.0, 23.0, 41.0],
+    [90.0, 45.0, 30.0],
+    [0.0, 0.0, 1e-4],
+    [-71.3, 110.0, 5.0],
+    [0.0, 60.0, 0.0],
+];
 
 /// A case upright, turned as a whole, and with every part turned.
-fn in_three_ways(tree: Tree) -> [Tree; 3] {
-    [tree.clone(), each_turned(TURN, &tree), turned(TURN, tree)]
+fn in_all_ways(tree: Tree) -> Vec<Tree> {
+    let ways = TURNS.map(|turn| [each_turned(turn, &tree), turned(turn, tree.clone())]);
+    std::iter::once(tree).chain(ways.into_iter().flatten()).collect()
 }
 
 /// What a case must give: volume, triangles, Euler number; upright and turned.
 #[track_caller]
 fn check(tree: Tree, expected_volume: f64, triangles: usize, euler_number: i64) {
-    for tree in in_three_ways(tree) {
+    for tree in in_all_ways(tree) {
         let solid = solid(&tree);
         assert_eq!(soundness::fault(&solid), None);
         let found = volume(&solid);
@@ -97,7 +104,7 @@ fn a_post_whose_corner_stands_on_the_rim() {
     let plate = || block([0.0; 3], [2.0, 3.0, 1.0]);
     check(union(vec![plate(), post(1.0)]), 7.0, 24, 2);
     check(union(vec![plate(), post(0.0)]), 7.0, 24, 2);
-    for tree in in_three_ways(less(vec![plate(), post(0.5)])) {
+    for tree in in_all_ways(less(vec![plate(), post(0.5)])) {
         let solid = solid(&tree);
         assert_eq!(soundness::fault(&solid), None);
         assert!((volume(&solid) - 5.75).abs() < 1e-12);
@@ -112,7 +119,7 @@ fn a_ring_that_touches_itself_along_an_edge() {
         block([0.0, 2.0, 0.0], [2.0, 3.0, 1.0]),
         block([2.0, 0.0, 0.0], [3.0, 2.0, 1.0]),
     ]);
-    for tree in in_three_ways(ring) {
+    for tree in in_all_ways(ring) {
         let solid = solid(&tree);
         assert_eq!(soundness::fault(&solid), None);
         assert!((volume(&solid) - 7.0).abs() < 1e-9);
@@ -168,7 +175,7 @@ fn cylinder_flush_in_a_box() {
         let rod = leaf(rod);
         check(union(vec![plate(), rod.clone()]), 32.0, 12, 2);
         let drilled = less(vec![plate(), rod.clone()]);
-        for tree in in_three_ways(drilled.clone()) {
+        for tree in in_all_ways(drilled.clone()) {
             let solid = solid(&tree);
             assert_eq!(soundness::fault(&solid), None);
             assert!((volume(&solid) - (32.0 - hole)).abs() < 1e-6);
@@ -179,11 +186,24 @@ fn cylinder_flush_in_a_box() {
     }
 }
 
+/// Where on its axis a cylinder is taken hold of is no matter: no ring stays between the two.
+#[test]
+fn cylinders_end_to_end() {
+    let sides = 24;
+    let rod = |low: f64, high: f64| leaf(cylinder([2.0, 1.0], 1.5, low, high, sides));
+    let length = volume(&cylinder([2.0, 1.0], 1.5, 0.0, 9.0, sides));
+    let triangles = 4 * sides as usize - 4;
+    check(union(vec![rod(0.0, 4.0), rod(4.0, 9.0)]), length, triangles, 2);
+    check(union(vec![rod(0.0, 6.0), rod(3.0, 9.0)]), length, triangles, 2);
+    let stack = union((0..9).map(|i| moved([0.0, 0.0, f64::from(i)], rod(0.0, 1.0))).collect());
+    check(stack, length, triangles, 2);
+}
+
 #[test]
 fn a_cylinder_half_in_a_wall() {
     let rod = leaf(cylinder([2.0, 0.0], 1.0, 0.0, 3.0, 24));
     let half = less(vec![rod, block([0.0; 3], [4.0, 2.0, 3.0])]);
-    for tree in in_three_ways(half) {
+    for tree in in_all_ways(half) {
         let solid = solid(&tree);
         assert_eq!(soundness::fault(&solid), None);
         assert_eq!(solid.mesh().triangle_count(), 2 * 11 + 2 * 12 + 2);

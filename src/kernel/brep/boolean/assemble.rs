@@ -10,6 +10,7 @@ use super::{
     cells::Complex,
     classify::Sides,
     facet::Facets,
+    flat::flat_triangle,
     frame::Plan,
     origins::{Flat, Key, Labels},
     outline::{Loop, Once, Outline},
@@ -65,7 +66,7 @@ struct Draft {
 }
 
 impl Assembly<'_> {
-    /// The result, placed, and a place in mm where it crosses itself if that could not be mended; `None`
+    /// The result, placed, and a place in mm where it crosses itself or is flat if that could not be mended; `None`
     /// if it is not closed.
     ///
     /// What is merged, moved back to its corners and rounded may cross what was apart by less. There
@@ -79,12 +80,24 @@ impl Assembly<'_> {
             match (tangle, rounds.next()) {
                 (Some(tangle), Some(_)) => self.hold_apart(&tangle, &draft, &mut strict),
                 (tangle, _) => {
+                    let flat = self.flat_triangle(&draft);
                     let (faces, points) = (draft.polygons.len(), draft.own_points);
                     let solid = Polyhedron::seamed(draft.mesh, faces, points).ok()?;
-                    return Some((solid, tangle.map(|t| t.place)));
+                    return Some((solid, tangle.map(|t| t.place).or(flat)));
                 }
             }
         }
+    }
+
+    /// A place in mm where a face is flat: among those that may cross others, of a small result among all.
+    fn flat_triangle(&self, draft: &Draft) -> Option<DVec3> {
+        let count = draft.polygons.len() as u32;
+        let all: Vec<u32> = match draft.polygons.len() <= SMALL || self.plan.mending.is_some() {
+            true => (0..count).collect(),
+            false => vec![],
+        };
+        let faces = if all.is_empty() { &draft.suspects } else { &all };
+        flat_triangle(&draft.mesh, faces, &draft.points)
     }
 
     /// Takes what is around crossing faces as it is on the lattice.
@@ -214,7 +227,7 @@ impl Assembly<'_> {
             }
             start += run.len();
         }
-        if mesh.face_count() <= SMALL {
+        if mesh.face_count() <= SMALL || self.plan.mending.is_some() {
             draft.suspects.extend(doubtful);
         }
     }

@@ -38,6 +38,9 @@ pub(super) struct Plan {
     pub frame: Placement,
     /// Largest movement of a corner in operations evaluated on the way, mm where the result stands.
     pub snap: f64,
+    /// For a result that is [mended](super::mend), by how many grades the lattice is coarser than it could be;
+    /// every face of what comes out is tested.
+    pub mending: Option<u32>,
 }
 
 impl Plan {
@@ -76,7 +79,7 @@ pub(super) fn plan(tree: &Tree, outer: &Placement) -> Result<Plan, BooleanError>
     let mut walk = Walk { inverse, outer: *outer, leaves: vec![], snap: 0.0 };
     let expression = walk.operation(tree, &Placement::IDENTITY)?;
     let Walk { leaves, snap, .. } = walk;
-    Ok(Plan { leaves, expression, frame: outer.after(&here), snap })
+    Ok(Plan { leaves, expression, frame: outer.after(&here), snap, mending: None })
 }
 
 /// The linear part that most leaves share, the first of them when several do.

@@ -48,6 +48,13 @@ impl Lattice {
         Lattice { digit, power, ..self }
     }
 
+    /// The same lattice with a step so many grades coarser; three are a factor of ten.
+    pub fn coarsened(&self, grades: u32) -> Lattice {
+        let coarse = (0..grades).fold(*self, |lattice, _| lattice.coarser());
+        let center = self.place([0.0; 3]).to_array().map(|c| coarse.count(c).round());
+        Lattice { center, ..coarse }
+    }
+
     /// The step in millimetres.
     pub fn step(&self) -> f64 {
         self.length(1.0)
@@ -112,6 +119,17 @@ mod tests {
             let index = lattice.snap(DVec3::splat(value));
             assert_eq!(lattice.place(index.map(|i| i as f64)), DVec3::splat(value), "{text}");
         }
+    }
+
+    #[test]
+    fn coarser_lattices_are_about_the_same_place() {
+        let fine = Lattice::covering(DVec3::splat(100.0), DVec3::splat(300.0)).expect("finite");
+        let coarse = fine.coarsened(3);
+        assert!((coarse.step() - 10.0 * fine.step()).abs() < 1e-20);
+        let point = DVec3::new(101.25, 200.5, 299.0);
+        let back = coarse.place(coarse.snap(point).map(|i| i as f64));
+        assert_eq!(back, point);
+        assert!(coarse.snap(point).iter().all(|c| c.abs() < RANGE / 8));
     }
 
     #[test]

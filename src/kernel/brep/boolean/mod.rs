@@ -33,7 +33,8 @@
 //! What is approximate: corners are moved to the lattice on the way in, by at most half a step per
 //! axis ([`Evaluated::snap`]; coordinates written in decimals usually not at all), and new vertices
 //! are rounded on the way out. A corner that no cut touches comes out with the coordinates it had.
-//! Faces that this could make cross others are tested, and put together anew where they do.
+//! Faces that this could make cross others are tested, and put together anew where they do ([`assemble`],
+//! [`flat`], [`mend`]).
 //!
 //! # Sources
 //! Winding vectors and an integer lattice: Trettner, Nehring-Wirxel and Kobbelt, *EMBER: exact mesh
@@ -54,6 +55,7 @@ mod classify;
 mod clusters;
 mod expression;
 mod facet;
+mod flat;
 mod frame;
 mod graph;
 mod grid;
@@ -61,6 +63,7 @@ mod hierarchy;
 mod intersect;
 mod lattice;
 mod locate;
+mod mend;
 mod nesting;
 mod origins;
 mod outline;
@@ -94,7 +97,7 @@ use self::{
     seed::Surroundings,
     space::Space,
 };
-use super::polyhedron::Polyhedron;
+use super::{polyhedron::Polyhedron, resolution::lost};
 use crate::geom::{Placement, PolyMesh};
 
 /// A construction tree of solids.
@@ -123,8 +126,8 @@ pub struct Evaluated {
     /// The step of the lattice of the outermost operation, the largest if groups of it have lattices of
     /// their own, mm; 0 for a leaf alone.
     pub step: f64,
-    /// A place in mm where the result crosses itself because features finer than the lattice could not
-    /// be rounded apart; `None` nearly always.
+    /// A place in mm where the result crosses itself because features finer than the lattice, or than
+    /// coordinates [where it stands](super::resolution), could not be rounded apart; `None` nearly always.
     pub crossing: Option<DVec3>,
 }
 
@@ -181,7 +184,9 @@ fn evaluate_at(tree: &Tree, outer: &Placement) -> Result<Evaluated, BooleanError
     }
     match inner {
         Tree::Leaf(solid) => {
-            Ok(Evaluated { solid: solid.placed(&placement), snap: 0.0, step: 0.0, crossing: None })
+            let solid = solid.placed(&placement);
+            let crossing = lost(&solid);
+            Ok(Evaluated { solid, snap: 0.0, step: 0.0, crossing })
         }
         operation => evaluate_operation(operation, &placement),
     }
@@ -203,11 +208,15 @@ fn evaluate_operation(tree: &Tree, outer: &Placement) -> Result<Evaluated, Boole
         return side_by_side(&groups, outer);
     }
     let plan = frame::plan(tree, outer)?;
-    if let Some(evaluated) = arranged(&plan, true, true)? {
-        return Ok(evaluated);
-    }
-    // A leaf that crosses itself, as it came or after snapping: compare all facets with all.
-    arranged(&plan, false, false)?.ok_or(BooleanError::NotClosed)
+    let found = match arranged(&plan, true, true)? {
+        Some(found) => found,
+        // A leaf that crosses itself, as it came or after snapping: compare all facets with all.
+        None => arranged(&plan, false, false)?.ok_or(BooleanError::NotClosed)?,
+    };
+    Ok(match (found.crossing, lost(&found.solid)) {
+        (Some(_), None) => mend::mended(&plan, found),
+        (crossing, lost) => Evaluated { crossing: crossing.or(lost), ..found },
+    })
 }
 
 /// Evaluates trees that do not touch, each for itself.
@@ -234,6 +243,7 @@ fn arranged(plan: &Plan, trusted: bool, resting: bool) -> Result<Option<Evaluate
     }
     let (min, max) = facet::extent(&plan.leaves);
     let lattice = Lattice::covering(min, max).ok_or(BooleanError::NotFinite)?;
+    let lattice = plan.mending.map_or(lattice, |grades| lattice.coarsened(grades));
     let mut space = Space::default();
     let patches = Patches::of(&plan.leaves, &lattice, resting);
     let (mut facets, sources) = Facets::of(&plan.leaves, &patches, &lattice, &mut space);

@@ -22,15 +22,6 @@ pub(super) enum Flat {
     Piece(u32),
 }
 
-/// The source of a piece.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-enum Patch {
-    /// A true plane: all pieces with the same origin are alike.
-    Plane(u32),
-    /// A facet of a curved surface, by leaf and face.
-    Face(u32, u32),
-}
-
 /// Pieces with equal keys that share an edge are one polygon.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub(super) struct Key {
@@ -38,7 +29,6 @@ pub(super) struct Key {
     pub flat: Flat,
     /// Whether the outside is where that plane's normal points.
     up: bool,
-    patch: Patch,
     /// The number of its origin in the result.
     pub origin: u32,
 }
@@ -60,6 +50,8 @@ pub(super) struct Labels<'a> {
     /// The exact plane of a source plane, and whether it faces against it.
     planes: FxHashMap<(u32, u32), (u32, bool)>,
     numbers: FxHashMap<(u32, u32), u32>,
+    /// The origins by where their surfaces are.
+    near: FxHashMap<[i64; 3], Vec<u32>>,
     /// The origins of the result.
     pub origins: Vec<Origin>,
 }
@@ -73,6 +65,7 @@ impl<'a> Labels<'a> {
             apart: FxHashSet::default(),
             planes: FxHashMap::default(),
             numbers: FxHashMap::default(),
+            near: FxHashMap::default(),
             origins: vec![],
         };
         for (number, facet) in (0u32..).zip(facets.list()) {
@@ -93,8 +86,8 @@ impl<'a> Labels<'a> {
     /// must be known.
     pub fn exact(plan: &'a Plan, facets: &'a Facets) -> Labels<'a> {
         let (planes, numbers) = (FxHashMap::default(), FxHashMap::default());
-        let apart = FxHashSet::default();
-        Labels { plan, facets, exact: true, apart, planes, numbers, origins: vec![] }
+        let (apart, near) = (FxHashSet::default(), FxHashMap::default());
+        Labels { plan, facets, exact: true, apart, planes, numbers, near, origins: vec![] }
     }
 
     /// The same labels, but some cells are merged with no other.
@@ -118,11 +111,7 @@ impl<'a> Labels<'a> {
         };
         let flat = if self.apart.contains(&cell) { Flat::Piece(cell) } else { flat };
         let origin = self.origin(leaf, face);
-        let patch = match self.origins[origin as usize].surface {
-            Surface::Plane => Patch::Plane(origin),
-            _ => Patch::Face(leaf, face),
-        };
-        Key { flat, up, patch, origin }
+        Key { flat, up, origin }
     }
 
     /// The plane of a facet and whether it faces against it, where that counts.
@@ -135,7 +124,8 @@ impl<'a> Labels<'a> {
         known.map(|&(plane, turned)| (plane, turned != flipped))
     }
 
-    /// The number of a face's origin in the result; equal origins get one number.
+    /// The number of a face's origin in the result; equal origins get one number, wherever a surface was
+    /// taken hold of.
     pub fn origin(&mut self, leaf: u32, face: u32) -> u32 {
         let source = &self.plan.leaves[leaf as usize];
         let face = source.solid.mesh().face(face as usize);
@@ -143,14 +133,26 @@ impl<'a> Labels<'a> {
         *self.numbers.entry((leaf, face.origin_index())).or_insert_with(|| {
             let mut origin = face.origin().clone();
             origin.surface = origin.surface.placed(&source.full);
-            let known = match origin.surface {
-                Surface::Plane => origins.iter().position(|o| *o == origin),
-                _ => None,
-            };
+            let near = self.near.entry(cell(&origin.surface)).or_default();
+            let known = near.iter().copied().find(|&n| is_alike(&origins[n as usize], &origin));
             known.unwrap_or_else(|| {
+                near.push(origins.len() as u32);
                 origins.push(origin);
-                origins.len() - 1
-            }) as u32
+                origins.len() as u32 - 1
+            })
         })
     }
+}
+
+fn is_alike(a: &Origin, b: &Origin) -> bool {
+    a.color == b.color && a.tags == b.tags && a.surface.is_same(&b.surface)
+}
+
+/// The cell of a grid, as wide as the surface, in which it is looked for. Shifted, so that whole places, the
+/// most frequent ones, are far from the borders of cells; a surface that is not found there anew is only not
+/// merged with itself.
+fn cell(surface: &Surface) -> [i64; 3] {
+    const SHIFT: f64 = 0.317;
+    let (anchor, size) = surface.anchor();
+    (anchor / size + SHIFT).floor().to_array().map(|c| c as i64)
 }
