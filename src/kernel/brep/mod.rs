@@ -14,5 +14,6 @@ pub mod polyhedron;
 pub mod primitive;
 pub mod revolve;
 mod ridge;
+mod separation;
 
 pub use polyhedron::{Defect, Polyhedron};
