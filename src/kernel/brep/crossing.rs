@@ -1,14 +1,18 @@
 //! Where a closed surface crosses or covers itself.
 
 use glam::{DVec2, DVec3};
-use rustc_hash::FxHashMap;
+use rayon::prelude::*;
+use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::Polyhedron;
+use super::{
+    Polyhedron,
+    separation::{Hull, Slope},
+};
 use crate::geom::{
     Bounds, PolyMesh,
     bvh::Bvh,
     orient::{orient2d, orient3d},
-    triangulate::{triangulate, triangulate_face},
+    triangulate::{Triangles, triangulate, triangulate_face},
 };
 
 type Triangle = [DVec3; 3];
@@ -33,7 +37,7 @@ pub fn crossing(mesh: &PolyMesh) -> Option<DVec3> {
     let mut first = None;
     Bvh::new(&soup.boxes).self_pairs(|i, j| {
         let known = first.is_some_and(|known| known <= (i, j));
-        if !known && !soup.are_neighbours(i, j) && soup.meet(i, j) {
+        if !known && soup.shared(i, j) == 0 && soup.meet(i, j) {
             first = Some((i, j));
         }
     });
@@ -54,7 +58,9 @@ pub fn crossing(mesh: &PolyMesh) -> Option<DVec3> {
 /// ```
 pub fn crossings(mesh: &PolyMesh) -> Vec<DVec3> {
     let soup = Soup::of(mesh);
-    soup.crossings(|_, _| true).into_iter().map(|[i, j]| soup.place(i, j)).collect()
+    let mut pairs = vec![];
+    Bvh::new(&soup.boxes).self_pairs(|i, j| pairs.push([i, j]));
+    soup.crossings(&pairs).into_iter().map(|[i, j]| soup.place(i, j)).collect()
 }
 
 /// Pairs of faces, at least one of them suspected, that cross or lie on each other, and a place in mm where
@@ -71,63 +77,165 @@ pub(super) fn tangle(mesh: &PolyMesh, count: usize, suspects: &[u32]) -> Option<
     if suspects.is_empty() {
         return None;
     }
-    let bounds = |face: u32| {
-        Bounds::of(mesh.face(face as usize).outer().iter().map(|&c| mesh.points[c as usize]))
-    };
-    let boxes: Vec<Bounds> = suspects.iter().map(|&face| bounds(face)).collect();
-    let mut suspected = vec![false; count];
-    suspects.iter().for_each(|&face| suspected[face as usize] = true);
-    let hierarchy = Bvh::new(&boxes);
-    let near = (0..count as u32)
-        .filter(|&f| suspected[f as usize] || !hierarchy.overlapping(&bounds(f)).is_empty());
-    let (soup, owners) = Soup::of_faces(mesh, near);
-    let pair = |i: u32, j: u32| [i, j].map(|t| owners[t as usize]);
-    let is_suspected = |i, j| pair(i, j).iter().any(|&f| suspected[f as usize]);
-    let found = soup.crossings(is_suspected);
+    let open = unproved(mesh, count, suspects);
+    let mut soup = Soup::of_faces(mesh, &unique(open.iter().flatten().copied()));
+    let is_open: FxHashSet<[u32; 2]> = open.into_iter().collect();
+    let mut pairs = vec![];
+    Bvh::new(&soup.boxes).self_pairs(|i, j| {
+        let [f, g] = [i, j].map(|t| soup.owners[t as usize]);
+        if is_open.contains(&[f.min(g), f.max(g)]) {
+            pairs.push([i, j]);
+        }
+    });
+    let mut found = soup.meeting(&pairs);
+    if found.is_empty() {
+        return None;
+    }
+    soup.add_around(&found, mesh, count);
+    soup.drop_touching(&mut found);
     let &[i, j] = found.first()?;
-    let faces = found.iter().map(|&[i, j]| pair(i, j)).collect();
+    let faces = found.iter().map(|pair| pair.map(|t| soup.owners[t as usize])).collect();
     Some(Tangle { faces, place: soup.place(i, j) })
 }
 
-/// The triangles of a mesh.
+/// The faces in a list, each once, in order.
+fn unique(faces: impl Iterator<Item = u32>) -> Vec<u32> {
+    let mut faces: Vec<u32> = faces.collect();
+    faces.sort_unstable();
+    faces.dedup();
+    faces
+}
+
+/// The pairs of faces among the first `count`, at least one of them suspected, whose boxes meet and that are
+/// not [kept apart](Hull::is_apart) for certain; a suspected face that may cross itself is a pair for itself.
+fn unproved(mesh: &PolyMesh, count: usize, suspects: &[u32]) -> Vec<[u32; 2]> {
+    let hull = |face: u32| Hull::of(mesh, mesh.face(face as usize));
+    let bounds = |face: u32| {
+        let corners = mesh.face(face as usize).loops().flatten();
+        Bounds::of(corners.map(|&c| mesh.points[c as usize]))
+    };
+    let is_apart = |f: &Option<Hull<'_>>, g: &Option<Hull<'_>>| {
+        f.as_ref().zip(g.as_ref()).is_some_and(|(f, g)| f.is_apart(g))
+    };
+    let hulls = spread(suspects, |&f| Some(hull(f)));
+    let boxes: Vec<Bounds> = suspects.iter().map(|&f| bounds(f)).collect();
+    let hierarchy = Bvh::new(&boxes);
+    // The place of each suspect.
+    let mut places = vec![u32::MAX; count];
+    (0u32..).zip(suspects).for_each(|(place, &face)| places[face as usize] = place);
+    let faces: Vec<u32> = (0..count as u32).collect();
+    spread(&faces, |&face| {
+        let place = places[face as usize];
+        let mut own = None;
+        let mut open = vec![];
+        let (bounds, is_suspect) = match boxes.get(place as usize) {
+            Some(known) => (*known, true),
+            None => (bounds(face), false),
+        };
+        hierarchy.visit(&bounds, |i| {
+            let other = &hulls[i as usize];
+            let is_sound = match is_suspect {
+                true if i < place => true,
+                true if i == place => other.as_ref().is_some_and(Hull::is_simple),
+                true => is_apart(&hulls[place as usize], other),
+                false => is_apart(own.get_or_insert_with(|| hull(face)), other),
+            };
+            if !is_sound {
+                let other = suspects[i as usize];
+                open.push([face.min(other), face.max(other)]);
+            }
+        });
+        open
+    })
+}
+
+/// Items that one thread looks at together.
+const CHUNK: usize = 256;
+
+/// What is found for all items of a list, in order, by all threads if the list is long.
+fn spread<T: Sync, R: Send, I: IntoIterator<Item = R>>(
+    list: &[T],
+    find: impl Fn(&T) -> I + Sync,
+) -> Vec<R> {
+    if list.len() <= CHUNK {
+        return list.iter().flat_map(find).collect();
+    }
+    let chunks = list.par_chunks(CHUNK).map(|chunk| chunk.iter().flat_map(&find).collect());
+    let chunks: Vec<Vec<R>> = chunks.collect();
+    chunks.into_iter().flatten().collect()
+}
+
+/// The triangles of a mesh, or of some of its faces.
 struct Soup<'a> {
     points: &'a [DVec3],
     indices: Vec<[u32; 3]>,
+    /// The face of each.
+    owners: Vec<u32>,
     corners: Vec<Triangle>,
+    planes: Vec<Slope>,
     boxes: Vec<Bounds>,
 }
 
 impl Soup<'_> {
     fn of(mesh: &PolyMesh) -> Soup<'_> {
-        Soup::new(mesh, triangulate(mesh).corners)
+        let Triangles { corners, face } = triangulate(mesh);
+        let mut soup = Soup::empty(mesh);
+        (soup.indices, soup.owners) = (corners, face);
+        soup.locate();
+        soup
     }
 
-    /// The triangles of some faces, and the face of each.
-    fn of_faces(mesh: &PolyMesh, faces: impl Iterator<Item = u32>) -> (Soup<'_>, Vec<u32>) {
-        let (mut indices, mut owners) = (vec![], vec![]);
-        for face in faces {
+    fn empty(mesh: &PolyMesh) -> Soup<'_> {
+        let (indices, owners, corners) = (vec![], vec![], vec![]);
+        Soup { points: &mesh.points, indices, owners, corners, planes: vec![], boxes: vec![] }
+    }
+
+    /// The triangles of some faces.
+    fn of_faces<'a>(mesh: &'a PolyMesh, faces: &[u32]) -> Soup<'a> {
+        let mut soup = Soup::empty(mesh);
+        soup.append(mesh, faces);
+        soup
+    }
+
+    /// Adds the triangles of some faces.
+    fn append(&mut self, mesh: &PolyMesh, faces: &[u32]) {
+        let triangles = spread(faces, |&face| {
             let loops: Vec<&[u32]> = mesh.face(face as usize).loops().collect();
-            triangulate_face(&mesh.points, &loops, &mut indices);
-            owners.resize(indices.len(), face);
-        }
-        (Soup::new(mesh, indices), owners)
+            let mut triangles = vec![];
+            triangulate_face(&mesh.points, &loops, &mut triangles);
+            triangles.into_iter().map(move |corners| (corners, face))
+        });
+        self.indices.extend(triangles.iter().map(|t| t.0));
+        self.owners.extend(triangles.iter().map(|t| t.1));
+        self.locate();
     }
 
-    fn new(mesh: &PolyMesh, indices: Vec<[u32; 3]>) -> Soup<'_> {
-        let corners: Vec<Triangle> =
-            indices.iter().map(|t| t.map(|c| mesh.points[c as usize])).collect();
-        let boxes = corners.iter().map(|t| Bounds::of(*t)).collect();
-        Soup { points: &mesh.points, indices, corners, boxes }
+    /// Adds the triangles of the faces, among the first `count`, at corners of some triangles.
+    fn add_around(&mut self, pairs: &[[u32; 2]], mesh: &PolyMesh, count: usize) {
+        let corners = pairs.iter().flatten().flat_map(|&t| self.indices[t as usize]);
+        let corners: FxHashSet<u32> = corners.collect();
+        let known: FxHashSet<u32> = self.owners.iter().copied().collect();
+        let is_around = |face: &u32| {
+            let mut all = mesh.face(*face as usize).loops().flatten();
+            !known.contains(face) && all.any(|corner| corners.contains(corner))
+        };
+        let around: Vec<u32> = (0..count as u32).filter(is_around).collect();
+        self.append(mesh, &around);
     }
 
-    /// Whether two triangles share a corner.
-    fn are_neighbours(&self, i: u32, j: u32) -> bool {
+    /// Finds the places of triangles that have none yet.
+    fn locate(&mut self) {
+        let from = self.corners.len();
+        let places = self.indices[from..].iter().map(|t| t.map(|c| self.points[c as usize]));
+        self.corners.extend(places);
+        self.planes.extend(self.corners[from..].iter().map(Slope::of));
+        self.boxes.extend(self.corners[from..].iter().map(|t| Bounds::of(*t)));
+    }
+
+    /// How many corners two triangles share.
+    fn shared(&self, i: u32, j: u32) -> usize {
         let [a, b] = [i, j].map(|t| &self.indices[t as usize]);
-        a.iter().any(|corner| b.contains(corner))
-    }
-
-    fn meet(&self, i: u32, j: u32) -> bool {
-        meet(&self.corners[i as usize], &self.corners[j as usize])
+        a.iter().filter(|corner| b.contains(corner)).count()
     }
 
     /// For each edge and each way along it the corner beyond the edge from the triangle that runs that way.
@@ -136,19 +244,51 @@ impl Soup<'_> {
         self.indices.iter().flat_map(sides).collect()
     }
 
-    /// The pairs of triangles that cross or cover each other and do not only touch, among those asked for.
-    fn crossings(&self, is_asked: impl Fn(u32, u32) -> bool) -> Vec<[u32; 2]> {
-        let mut found = vec![];
-        Bvh::new(&self.boxes).self_pairs(|i, j| {
-            if is_asked(i, j) && self.meet(i, j) {
-                found.push([i, j]);
-            }
-        });
-        if !found.is_empty() {
-            let beyond = self.beyond();
-            found.retain(|&[i, j]| !self.touch(i, j, &beyond) && !self.touch(j, i, &beyond));
-        }
+    /// Those of the pairs of triangles that cross or cover each other and do not only touch.
+    fn crossings(&self, pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
+        let mut found = self.meeting(pairs);
+        self.drop_touching(&mut found);
         found
+    }
+
+    /// Those of the pairs of triangles that [meet](Soup::meet).
+    fn meeting(&self, pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
+        spread(pairs, |&[i, j]| self.meet(i, j).then_some([i, j]))
+    }
+
+    /// Leaves out the pairs of triangles that only touch.
+    fn drop_touching(&self, pairs: &mut Vec<[u32; 2]>) {
+        if !pairs.is_empty() {
+            let beyond = self.beyond();
+            pairs.retain(|&[i, j]| !self.touch(i, j, &beyond) && !self.touch(j, i, &beyond));
+        }
+    }
+
+    /// Whether two triangles pass through each other, have area in common, or one has an edge on the other.
+    /// What shared corners and a common face tell is not computed.
+    fn meet(&self, i: u32, j: u32) -> bool {
+        let [s, t] = [i, j].map(|k| &self.corners[k as usize]);
+        if self.owners[i as usize] == self.owners[j as usize] && are_apart(s, t) {
+            return false;
+        }
+        let of_t = self.sides(i, j);
+        if is_beside(of_t) || (of_t != [0.0; 3] && self.shared(i, j) > 1) {
+            return false;
+        }
+        if of_t == [0.0; 3] { overlap(s, t) } else { pass((s, self.sides(j, i)), (t, of_t)) }
+    }
+
+    /// On which side of the plane of triangle `i` the corners of `j` are.
+    fn sides(&self, i: u32, j: u32) -> [f64; 3] {
+        let (i, j) = (i as usize, j as usize);
+        let (own, [a, b, c], plane) = (&self.indices[i], &self.corners[i], &self.planes[i]);
+        std::array::from_fn(|k| {
+            if own.contains(&self.indices[j][k]) {
+                return 0.0;
+            }
+            let p = self.corners[j][k];
+            plane.side(p - *a).map_or_else(|| orient3d(*a, *b, *c, p), |height| -height)
+        })
     }
 
     /// Whether triangle `i` only stands on `j`, up to rounding of coordinates: with a corner in its plane, or
@@ -181,13 +321,15 @@ impl Soup<'_> {
     }
 }
 
-/// Whether two triangles pass through each other, have area in common, or one has an edge on the other.
-fn meet(s: &Triangle, t: &Triangle) -> bool {
-    let sides = |s: &Triangle, t: &Triangle| t.map(|p| orient3d(s[0], s[1], s[2], p));
-    let (of_s, of_t) = (sides(t, s), sides(s, t));
-    if of_t == [0.0; 3] {
-        return overlap(s, t);
-    }
+/// Whether a triangle with its corners on these sides of a plane has at most a corner in it.
+fn is_beside(sides: [f64; 3]) -> bool {
+    let [low, high] = [sides.iter().any(|v| *v < 0.0), sides.iter().any(|v| *v > 0.0)];
+    low != high && sides.iter().filter(|v| **v == 0.0).count() < 2
+}
+
+/// Whether two triangles in two planes, each with the sides of the other's plane that its corners are on,
+/// pass through each other or one has an edge on the other.
+fn pass((s, of_s): (&Triangle, [f64; 3]), (t, of_t): (&Triangle, [f64; 3])) -> bool {
     match (apex(s, of_s), apex(t, of_t)) {
         (Some(s), Some(t)) => straddle(&s, &t),
         (None, Some(_)) => rests(s, of_s, t),
@@ -235,6 +377,13 @@ fn overlap(s: &Triangle, t: &Triangle) -> bool {
     let (s, t) = (s.map(&flat), t.map(&flat));
     let has_area = |t: &[DVec2; 3]| orient2d(t[0], t[1], t[2]) != 0.0;
     has_area(&s) && has_area(&t) && !parted(&s, &t) && !parted(&t, &s)
+}
+
+/// Whether two triangles are seen beside each other, so that they have at most an edge in common.
+fn are_apart(s: &Triangle, t: &Triangle) -> bool {
+    let flat = projection(s);
+    let (s, t) = (s.map(&flat), t.map(&flat));
+    parted(&s, &t) || parted(&t, &s)
 }
 
 /// Drops the coordinate along which a triangle's normal is longest.

@@ -15,6 +15,7 @@ pub mod primitive;
 pub mod resolution;
 pub mod revolve;
 mod ridge;
+mod separation;
 pub mod sheet;
 
 pub use polyhedron::{Defect, Polyhedron};

@@ -71,17 +71,15 @@ impl Polyhedron {
         Polyhedron { mesh }
     }
 
-    /// Takes a mesh in of which only a part is new: the first `faces`, which have the first `points`.
-    /// All others come from solids as they stand, so only what meets at those points is checked.
-    pub(crate) fn seamed(mesh: PolyMesh, faces: usize, points: u32) -> Result<Polyhedron, Defect> {
+    /// Whether a mesh is closed and manifold by index of which only a part is new: the first `faces`, which
+    /// have the first `points`. All others come from solids as they stand, so only what meets at those points
+    /// is looked at; `false` says nothing.
+    pub(crate) fn is_seam_sound(mesh: &PolyMesh, faces: usize, points: u32) -> bool {
         let is_near = |face: &FaceRef<'_>| {
             face.index() < faces || face.loops().flatten().any(|&corner| corner < points)
         };
         let finite = mesh.points.iter().all(|p| p.is_finite());
-        if finite && Corners::of(mesh.faces().filter(is_near), points).are_fans() {
-            return Ok(Polyhedron::trusted(mesh));
-        }
-        Polyhedron::new(mesh)
+        finite && Corners::of(mesh.faces().filter(is_near), points).are_fans()
     }
 
     /// Its boundary.

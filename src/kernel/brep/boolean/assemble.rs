@@ -76,13 +76,19 @@ impl Assembly<'_> {
         let mut rounds = 0..ROUNDS;
         loop {
             let draft = self.draft(&strict)?;
-            let tangle = tangle(&draft.mesh, draft.polygons.len(), &draft.suspects);
+            let (mesh, faces) = (&draft.mesh, draft.polygons.len());
+            let (tangle, is_sound) = rayon::join(
+                || tangle(mesh, faces, &draft.suspects),
+                || Polyhedron::is_seam_sound(mesh, faces, draft.own_points),
+            );
             match (tangle, rounds.next()) {
                 (Some(tangle), Some(_)) => self.hold_apart(&tangle, &draft, &mut strict),
                 (tangle, _) => {
                     let flat = self.flat_triangle(&draft);
-                    let (faces, points) = (draft.polygons.len(), draft.own_points);
-                    let solid = Polyhedron::seamed(draft.mesh, faces, points).ok()?;
+                    let solid = match is_sound {
+                        true => Polyhedron::trusted(draft.mesh),
+                        false => Polyhedron::new(draft.mesh).ok()?,
+                    };
                     return Some((solid, tangle.map(|t| t.place).or(flat)));
                 }
             }

@@ -18,7 +18,8 @@ const MANY: usize = 48;
 pub(super) fn flat_triangle(mesh: &PolyMesh, faces: &[u32], points: &[u32]) -> Option<DVec3> {
     let at = |corner: u32| mesh.points[corner as usize];
     let point = |corner: u32| points.get(corner as usize).copied();
-    let touches = |a: u32, b: u32| point(a) == point(b) || at(a) == at(b) && point(a.max(b)).is_none();
+    let touches =
+        |a: u32, b: u32| point(a) == point(b) || at(a) == at(b) && point(a.max(b)).is_none();
     let is_lost = |&[a, b, c]: &[u32; 3]| {
         is_flat([a, b, c].map(at)) && !touches(a, b) && !touches(b, c) && !touches(c, a)
     };
@@ -36,7 +37,8 @@ pub(super) fn flat_triangle(mesh: &PolyMesh, faces: &[u32], points: &[u32]) -> O
 
 /// Whether a triangle has no area, up to the rounding of its corners.
 fn is_flat([a, b, c]: [DVec3; 3]) -> bool {
-    let longest = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
+    let longest =
+        (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
     let reach = a.length_squared().max(b.length_squared()).max(c.length_squared());
     (b - a).cross(c - a).length_squared() <= FLAT * FLAT * longest * reach
 }

@@ -1,0 +1,284 @@
+//! Planes that keep faces apart: a quick proof that two faces of a surface do not cross.
+//!
+//! However a face is cut into triangles, they lie in the hull of its corners. So two faces cannot cross if a
+//! plane has the corners of one on one side and those of the other on the other side, and the corners that
+//! they share in it. Such a plane is guessed and then verified by signs that doubles tell for certain.
+//!
+//! Nor do they cross if one of them stands on the other at the corners that they share, see [`Hull::carries`].
+//!
+//! What is not proved here may still be sound: triangles tell ([`super::crossing`]).
+
+use glam::{DVec2, DVec3};
+
+use crate::geom::{FaceRef, PolyMesh, orient::orient2d};
+
+/// Faces with more corners are not looked at: their hulls say little.
+const MANY: usize = 12;
+
+/// With more corners it is not looked for how near they come to each other.
+const FEW: usize = 8;
+
+/// How many times more than nothing the clearance must be, with room for what the argument leaves out.
+const ROOM: f64 = 64.0;
+
+/// Relative error of a product of three differences summed over the axes: a dozen roundings at most.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// The plane through three places, for a filter of signs.
+pub(super) struct Slope {
+    normal: DVec3,
+    /// How wrong a height may be, relative to the sum of the coordinates of the place.
+    error: f64,
+}
+
+impl Slope {
+    /// The plane through three places.
+    pub fn of([a, b, c]: &[DVec3; 3]) -> Slope {
+        let (p, q) = (*b - *a, *c - *a);
+        let (r, s) = (p.abs(), q.abs());
+        let terms = DVec3::new(r.y * s.z + r.z * s.y, r.z * s.x + r.x * s.z, r.x * s.y + r.y * s.x);
+        Slope { normal: p.cross(q), error: terms.max_element() * ROUNDING }
+    }
+
+    /// The plane through a place across a direction, which is taken as it is.
+    fn across(normal: DVec3) -> Slope {
+        Slope { normal, error: normal.abs().max_element() * ROUNDING }
+    }
+
+    /// The height of a place, given from a place in the plane, and how wrong it may be.
+    fn height(&self, at: DVec3) -> (f64, f64) {
+        (self.normal.dot(at), self.error * (at.x.abs() + at.y.abs() + at.z.abs()))
+    }
+
+    /// The height of a place, given from the first one, if its sign is certain.
+    pub fn side(&self, at: DVec3) -> Option<f64> {
+        let (height, error) = self.height(at);
+        (height.abs() > error).then_some(height)
+    }
+}
+
+/// A face with few corners in one loop.
+pub(super) struct Hull<'a> {
+    corners: &'a [u32],
+    points: &'a [DVec3],
+    /// A direction of length 1 across it, nearly.
+    normal: DVec3,
+    /// No two corners are farther apart along the normal.
+    flatness: f64,
+    /// No two corners are farther apart.
+    reach: f64,
+    /// No corner is nearer to a segment between two others; 0 if that is not known.
+    clearance: f64,
+    /// Whether its triangles are known not to cross each other.
+    is_simple: bool,
+}
+
+impl<'a> Hull<'a> {
+    /// The hull of a face; `None` if it has holes or many corners, or no area.
+    pub fn of(mesh: &'a PolyMesh, face: FaceRef<'a>) -> Option<Hull<'a>> {
+        let (corners, points) = (face.outer(), &mesh.points[..]);
+        if corners.len() > MANY || face.loops().nth(1).is_some() {
+            return None;
+        }
+        let at = |i: usize| points[corners[i] as usize] - points[corners[0] as usize];
+        let area = (1..corners.len() - 1).map(|i| at(i).cross(at(i + 1))).sum::<DVec3>();
+        let normal = area.try_normalize()?;
+        let slope = Slope::across(normal);
+        let (mut flatness, mut reach) = (0.0f64, 0.0f64);
+        for i in 1..corners.len() {
+            let (height, error) = slope.height(at(i));
+            flatness = flatness.max(2.0 * (height.abs() + error));
+            reach = reach.max(2.0 * at(i).length());
+        }
+        let mut hull =
+            Hull { corners, points, normal, flatness, reach, clearance: 0.0, is_simple: false };
+        hull.is_simple = hull.is_seen_whole();
+        if hull.is_simple && corners.len() <= FEW {
+            hull.clearance = hull.least_distance();
+        }
+        Some(hull)
+    }
+
+    /// Whether triangles of it are known not to cross each other.
+    pub fn is_simple(&self) -> bool {
+        self.is_simple
+    }
+
+    /// How near a corner comes to a segment between two others.
+    fn least_distance(&self) -> f64 {
+        let mut least = f64::INFINITY;
+        for (i, &a) in self.corners.iter().enumerate() {
+            for &b in &self.corners[i + 1..] {
+                let (from, along) = (self.at(a), self.at(b) - self.at(a));
+                let length = along.length_squared();
+                for &c in self.corners.iter().filter(|&&c| c != a && c != b) {
+                    let to = self.at(c) - from;
+                    let share = (to.dot(along) / length).clamp(0.0, 1.0);
+                    least = least.min((to - along * share).length_squared());
+                }
+            }
+        }
+        least.sqrt()
+    }
+
+    fn at(&self, corner: u32) -> DVec3 {
+        self.points[corner as usize]
+    }
+
+    /// Whether it is seen whole, within less than half a turn, from one of its corners, so that it does not
+    /// cross itself.
+    fn is_seen_whole(&self) -> bool {
+        let count = self.corners.len();
+        let size = self.normal.abs();
+        let axis = if size.z >= size.x.max(size.y) { 2 } else { usize::from(size.y > size.x) };
+        let mut flat = [DVec2::ZERO; MANY];
+        for (slot, &corner) in flat.iter_mut().zip(self.corners) {
+            let p = self.at(corner);
+            *slot = DVec2::new(p[(axis + 1) % 3], p[(axis + 2) % 3]);
+        }
+        let sign = self.normal[axis].signum();
+        (0..if count == 3 { 1 } else { count }).any(|from| {
+            let at = |k: usize| flat[(from + k) % count];
+            let turns = |i: usize, j: usize| orient2d(at(0), at(i), at(j)) * sign > 0.0;
+            (2..count).all(|k| turns(k - 1, k) && turns(1, k))
+        })
+    }
+
+    /// Whether a plane is found that keeps two faces apart.
+    pub fn is_apart(&self, other: &Hull<'_>) -> bool {
+        let mut shared = [0; 3];
+        let mut count = 0;
+        for &corner in self.corners.iter().filter(|c| other.corners.contains(c)) {
+            if count == 3 {
+                return false;
+            }
+            shared[count] = corner;
+            count += 1;
+        }
+        match shared[..count] {
+            [] => self.is_beyond(other, self.normal) || self.is_beyond(other, other.normal),
+            [a] => self.carry_each_other(other, &[a]) || self.part_at(other, a),
+            [a, b] => self.carry_each_other(other, &[a, b]) || self.part_along(other, (a, b)),
+            _ => false,
+        }
+    }
+
+    fn carry_each_other(&self, other: &Hull<'_>, shared: &[u32]) -> bool {
+        self.carries(other, shared) || other.carries(self, shared)
+    }
+
+    /// Whether another face stands on this one at one or two shared corners, so that they cannot cross: it has
+    /// all other corners at heights of at least h on one side.
+    ///
+    /// This face is within m of its plane, and all is of size R. So the other one can cross it only within
+    /// 2 m R / h of what they share. Triangles of this face that do not have that are at least the clearance c
+    /// away. For one that has it, at a share s of its size from the shared corner v, the two are s m apart at
+    /// most; so the other face's triangle is there at a share of at most about s m R / (h c) of its free
+    /// corner, which takes it no more than that times R away from the shared edge; but this face's triangle is
+    /// by s c c / R away from it. So they do not meet if h c c c > 2 m R R R, with room for the rest.
+    fn carries(&self, other: &Hull<'_>, shared: &[u32]) -> bool {
+        let (slope, base) = (Slope::across(self.normal), self.at(shared[0]));
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for &corner in other.corners.iter().filter(|c| !shared.contains(c)) {
+            let (height, error) = slope.height(self.at(corner) - base);
+            (low, high) = (low.min(height - error), high.max(height + error));
+        }
+        let height = low.max(-high);
+        let reach = self.reach.max(other.reach);
+        height * self.clearance.powi(3) > ROOM * self.flatness * reach.powi(3)
+    }
+
+    /// Whether all of the other face is farther along a direction, or all of it is less far.
+    fn is_beyond(&self, other: &Hull<'_>, along: DVec3) -> bool {
+        let (slope, base) = (Slope::across(along), self.at(self.corners[0]));
+        let range = |hull: &Hull<'_>| {
+            hull.corners.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |range, &corner| {
+                let (height, error) = slope.height(self.at(corner) - base);
+                (range.0.min(height - error), range.1.max(height + error))
+            })
+        };
+        let (own, others) = (range(self), range(other));
+        own.1 < others.0 || others.1 < own.0
+    }
+
+    /// The middle direction from a corner to the others.
+    fn inward(&self, from: DVec3) -> DVec3 {
+        self.corners.iter().map(|&c| (self.at(c) - from).normalize_or_zero()).sum()
+    }
+
+    /// Whether a plane through a shared corner is found that keeps two faces apart.
+    fn part_at(&self, other: &Hull<'_>, corner: u32) -> bool {
+        let base = self.at(corner);
+        let [own, others] = [self, other].map(|h| h.inward(base).normalize_or_zero());
+        self.is_parted(other, (Slope::across(others - own), base), &[corner])
+    }
+
+    /// Whether a plane through a shared edge is found that keeps two faces apart.
+    fn part_along(&self, other: &Hull<'_>, (a, b): (u32, u32)) -> bool {
+        let base = self.at(a);
+        let edge = self.at(b) - base;
+        let across = |hull: &Hull<'_>| {
+            let inward = hull.inward(base);
+            (inward - edge * (inward.dot(edge) / edge.length_squared())).normalize_or_zero()
+        };
+        let third = base + edge.cross(across(other) - across(self));
+        let slope = Slope::of(&[base, self.at(b), third]);
+        self.is_parted(other, (slope, base), &[a, b])
+    }
+
+    /// Whether a plane has all corners of one face, but those in it, on one side, and those of the other on
+    /// the other side.
+    fn is_parted(&self, other: &Hull<'_>, (slope, base): (Slope, DVec3), within: &[u32]) -> bool {
+        let all = |hull: &Hull<'_>, sign: f64| {
+            let mut free = hull.corners.iter().filter(|c| !within.contains(c));
+            free.all(|&c| slope.side(self.at(c) - base).is_some_and(|height| height * sign > 0.0))
+        };
+        (all(self, -1.0) && all(other, 1.0)) || (all(self, 1.0) && all(other, -1.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::dvec3;
+
+    use super::*;
+    use crate::geom::{Origin, Surface};
+    use crate::kernel::brep::primitive::sphere;
+
+    /// The hulls of all faces of a ball.
+    #[test]
+    fn faces_of_a_ball_are_apart() {
+        let ball = sphere(5.0, 24);
+        let mesh = ball.mesh();
+        let hulls: Vec<Hull<'_>> = mesh.faces().filter_map(|f| Hull::of(mesh, f)).collect();
+        for (i, a) in hulls.iter().enumerate() {
+            assert!(a.is_simple());
+            for b in &hulls[i + 1..] {
+                assert!(a.is_apart(b) && b.is_apart(a), "{:?} {:?}", a.corners, b.corners);
+            }
+        }
+    }
+
+    #[test]
+    fn faces_that_cross_are_not_apart() {
+        let corners = [
+            dvec3(0., 0., 0.),
+            dvec3(4., 0., 0.),
+            dvec3(0., 4., 0.),
+            dvec3(1., 1., -1.),
+            dvec3(1., 1., 1.),
+            dvec3(4., 4., 0.),
+        ];
+        let mut mesh = PolyMesh::with_points(corners.to_vec());
+        let (plane, origin) = (mesh.add_plane(), mesh.add_origin(Origin::of(Surface::Plane)));
+        for face in [[0, 1, 2], [3, 4, 5], [0, 3, 4], [0, 1, 5]] {
+            mesh.push_face(&[&face], plane, origin);
+        }
+        mesh.push_face(&[&[0, 1, 2, 5]], plane, origin);
+        let hull = |face: usize| Hull::of(&mesh, mesh.face(face)).expect("a hull");
+        for (a, b) in [(0, 1), (0, 2), (0, 3)] {
+            assert!(!hull(a).is_apart(&hull(b)), "{a} {b}");
+        }
+        assert!(hull(0).is_simple() && !hull(4).is_simple());
+    }
+}
