@@ -10,7 +10,7 @@ pub struct Raster {
 impl Raster {
     /// Rows of so many numbers one after another; `None` unless they are at least 2 x 2 and all finite.
     pub fn new(width: usize, values: Vec<f64>) -> Option<Raster> {
-        let whole = width >= 2 && values.len() >= 2 * width && values.len() % width == 0;
+        let whole = width >= 2 && values.len() >= 2 * width && values.len().is_multiple_of(width);
         (whole && values.iter().all(|v| v.is_finite())).then_some(Raster { width, values })
     }
 

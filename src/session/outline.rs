@@ -142,6 +142,9 @@ fn outlines(figure: &Figure) -> Vec<Outline> {
     lines.map(|line| line.placed(&figure.frame)).collect()
 }
 
+/// Centre and radius.
+type Circle = (DVec2, f64);
+
 /// The runs of a contour along one circle, and those between.
 fn contour_lines(contour: &Contour) -> Vec<Outline> {
     let edges: Vec<_> = contour.edges().collect();
@@ -155,7 +158,7 @@ fn contour_lines(contour: &Contour) -> Vec<Outline> {
         circle(before) != circle(edges[i].curve)
     };
     let start = (0..edges.len()).find(|&i| changes(i)).unwrap_or(0);
-    let mut lines: Vec<(Option<(DVec2, f64)>, Vec<DVec3>)> = vec![];
+    let mut lines: Vec<(Option<Circle>, Vec<DVec3>)> = vec![];
     for i in (0..edges.len()).map(|i| (start + i) % edges.len()) {
         let (on, to) = (circle(edges[i].curve), edges[i].to.extend(0.0));
         match lines.last_mut() {
@@ -163,7 +166,7 @@ fn contour_lines(contour: &Contour) -> Vec<Outline> {
             _ => lines.push((on, vec![edges[i].from.extend(0.0), to])),
         }
     }
-    let outline = |(on, points): (Option<(DVec2, f64)>, _)| {
+    let outline = |(on, points): (Option<Circle>, _)| {
         let round = on.map(|(center, radius)| Round {
             center: center.extend(0.0),
             x: DVec3::X * radius,
