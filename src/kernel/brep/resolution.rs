@@ -5,7 +5,10 @@
 
 use glam::DVec3;
 
-use super::{Polyhedron, crossing::crossings};
+use super::{
+    Polyhedron,
+    crossing::{crossings, is_hollow},
+};
 use crate::geom::{Bounds, PolyMesh, triangulate::triangulate};
 
 /// A solid so many times nearer to the origin than this, measured by its size, keeps even what is 2^-28 of its
@@ -21,7 +24,7 @@ const COARSE: f64 = 64.0;
 /// A triangle may be as high as this many units in the last place of its coordinates by rounding alone.
 const FLAT: f64 = 2.0;
 
-/// A place in mm where a solid crosses itself, lies on itself or has lost a triangle, as one that was sound does
+/// A place in mm where a solid crosses itself, lies on itself, has lost a triangle or its inside, as one that was sound does
 /// when it is placed where coordinates cannot tell its features apart; `None` if it does nowhere, or stands so
 /// near the origin that it cannot.
 ///
@@ -44,7 +47,8 @@ pub fn lost(solid: &Polyhedron) -> Option<DVec3> {
     if is_near || (reach <= FAR * size && !has_edge_below(mesh, COARSE * unit)) {
         return None;
     }
-    crossings(mesh).first().copied().or_else(|| flat_triangle(mesh, FLAT * unit))
+    let place = crossings(mesh).first().copied().or_else(|| flat_triangle(mesh, FLAT * unit));
+    place.or_else(|| is_hollow(solid).then(|| (min + max) / 2.0))
 }
 
 fn has_edge_below(mesh: &PolyMesh, length: f64) -> bool {

@@ -97,3 +97,20 @@ fn rounding_keeps_nothing_apart() {
     let far = DVec3::splat(1e6).to_array();
     assert_eq!(result(&moved(far, pair)).solid.mesh().triangle_count(), 12);
 }
+
+/// A slab of 1e-12 mm at 200 m, where coordinates are 3e-11 mm apart, has no inside left, and says so.
+#[test]
+fn what_coordinates_cannot_hold_is_stated() {
+    let [thick, less] = [1.000_001, 1.0].map(|top| block([0.0; 3], [1.0, 1.0, top]));
+    let slab = scaled(1e-6, Tree::Difference(vec![thick, less]));
+    let says_so = |tree: Tree| evaluate(&tree).expect("a result").crossing.is_some();
+    for slab in [slab.clone(), turned([17.0, 23.0, 41.0], slab)] {
+        let at = |z: f64, tree: &Tree| moved([0.0, 0.0, z], tree.clone());
+        assert!(!says_so(slab.clone()));
+        assert!(!says_so(at(1.0, &slab)));
+        assert!(says_so(at(2e5, &slab)));
+        let cube = at(3e5, &block([0.0; 3], [1.0; 3]));
+        assert!(!says_so(cube.clone()));
+        assert!(says_so(Tree::Union(vec![at(2e5, &slab), cube])));
+    }
+}

@@ -43,8 +43,11 @@ fn is_flat([a, b, c]: [DVec3; 3]) -> bool {
     (b - a).cross(c - a).length_squared() <= FLAT * FLAT * longest * reach
 }
 
-/// Whether a face may have a flat triangle: a corner is in line with its neighbours, or one that turns inwards
-/// is on another edge. No others make a polygon so thin.
+/// Corners at the ends of an edge that is so small a share of its face can be in line with a third far away.
+const SHORT: f64 = 1.0 / (1u64 << 20) as f64;
+
+/// Whether a face may have a flat triangle: an edge is very short, a corner is in line with its neighbours, or one
+/// that turns inwards is on another edge. No others make a polygon so thin.
 fn may_be_flat(points: &[DVec3], loops: &[&[u32]]) -> bool {
     if loops.len() > 1 || loops[0].len() > MANY {
         return true;
@@ -54,11 +57,13 @@ fn may_be_flat(points: &[DVec3], loops: &[&[u32]]) -> bool {
     let at = |i: usize| points[corners[i % n] as usize];
     let base = at(0);
     let normal: DVec3 = (1..n).map(|i| (at(i) - base).cross(at(i + 1) - base)).sum();
+    let extent = (1..n).map(|i| at(i).distance_squared(base)).fold(0.0, f64::max);
     (0..n).any(|i| {
         let [before, here, after] = [at(i + n - 1), at(i), at(i + 1)];
         let turns_in = (here - before).cross(after - here).dot(normal) <= 0.0;
         let on_edge = |j: usize| is_flat([here, at(i + j), at(i + j + 1)]);
-        is_flat([before, here, after]) || (turns_in && (1..n - 1).any(on_edge))
+        let is_short = here.distance_squared(after) <= SHORT * SHORT * extent;
+        is_short || is_flat([before, here, after]) || (turns_in && (1..n - 1).any(on_edge))
     })
 }
 
