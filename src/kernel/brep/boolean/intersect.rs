@@ -77,7 +77,7 @@ struct Involved {
 }
 
 /// Pairs that are looked at together by one thread.
-const CHUNK: usize = 512;
+const CHUNK: usize = 128;
 
 /// What pairs of facets do to each other, where they do; nothing is changed by looking.
 fn findings(pairs: &[(u32, u32)], facets: &Facets, space: &Space) -> Vec<(u32, Finding)> {
