@@ -76,6 +76,30 @@ impl PolyMesh {
         PolyMesh { points, ..PolyMesh::default() }
     }
 
+    /// Adds a face of another mesh with its corners renamed by `number`, in the opposite order if `turned`.
+    ///
+    /// # Panics
+    /// When a point, the plane or the origin does not exist.
+    pub fn push_renamed(
+        &mut self,
+        face: FaceRef<'_>,
+        turned: bool,
+        (plane, origin): (u32, u32),
+        number: impl Fn(u32) -> u32,
+    ) {
+        assert!(plane < self.planes && (origin as usize) < self.origins.len());
+        let start = self.corners.len();
+        for corners in face.loops() {
+            match turned {
+                true => self.corners.extend(corners.iter().rev().map(|&c| number(c))),
+                false => self.corners.extend(corners.iter().map(|&c| number(c))),
+            }
+            self.loop_ends.push(self.corners.len() as u32);
+        }
+        assert!(self.corners[start..].iter().all(|&c| (c as usize) < self.points.len()));
+        self.faces.push(Face { loops_end: self.loop_ends.len() as u32, plane, origin });
+    }
+
     /// Makes room for so many faces, of one loop each, with so many corners in all.
     pub fn reserve(&mut self, faces: usize, corners: usize) {
         self.corners.reserve(corners);
@@ -211,17 +235,20 @@ impl PolyMesh {
 }
 
 impl<'a> FaceRef<'a> {
+    #[inline]
     fn loop_range(self) -> std::ops::Range<usize> {
         let start = if self.index == 0 { 0 } else { self.mesh.faces[self.index - 1].loops_end };
         start as usize..self.mesh.faces[self.index].loops_end as usize
     }
 
     /// Its place among the faces.
+    #[inline]
     pub fn index(self) -> usize {
         self.index
     }
 
     /// Its loops as point indices: the outer one, then the holes.
+    #[inline]
     pub fn loops(self) -> impl ExactSizeIterator<Item = &'a [u32]> + Clone {
         let mesh = self.mesh;
         self.loop_range().map(move |i| {
@@ -231,11 +258,15 @@ impl<'a> FaceRef<'a> {
     }
 
     /// Its outer loop.
+    #[inline]
     pub fn outer(self) -> &'a [u32] {
-        self.loops().next().expect("a face has an outer loop")
+        let first = self.loop_range().start;
+        let start = if first == 0 { 0 } else { self.mesh.loop_ends[first - 1] };
+        &self.mesh.corners[start as usize..self.mesh.loop_ends[first] as usize]
     }
 
     /// The number of its plane.
+    #[inline]
     pub fn plane(self) -> u32 {
         self.mesh.faces[self.index].plane
     }

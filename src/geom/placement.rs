@@ -47,6 +47,7 @@ impl Placement {
     }
 
     /// The image of a point.
+    #[inline]
     pub fn point(&self, p: DVec3) -> DVec3 {
         if self.linear == DMat3::IDENTITY {
             return p + self.translation;

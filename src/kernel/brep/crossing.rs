@@ -79,15 +79,7 @@ pub(super) fn tangle(mesh: &PolyMesh, count: usize, suspects: &[u32]) -> Option<
     }
     let open = unproved(mesh, count, suspects);
     let mut soup = Soup::of_faces(mesh, &unique(open.iter().flatten().copied()));
-    let is_open: FxHashSet<[u32; 2]> = open.into_iter().collect();
-    let mut pairs = vec![];
-    Bvh::new(&soup.boxes).self_pairs(|i, j| {
-        let [f, g] = [i, j].map(|t| soup.owners[t as usize]);
-        if is_open.contains(&[f.min(g), f.max(g)]) {
-            pairs.push([i, j]);
-        }
-    });
-    let mut found = soup.meeting(&pairs);
+    let mut found = soup.meeting_of_faces(&open);
     if found.is_empty() {
         return None;
     }
@@ -148,6 +140,9 @@ fn unproved(mesh: &PolyMesh, count: usize, suspects: &[u32]) -> Vec<[u32; 2]> {
         open
     })
 }
+
+/// So many pairs of triangles of two faces are looked at one by one.
+const TOGETHER: usize = 4096;
 
 /// Items that one thread looks at together.
 const CHUNK: usize = 256;
@@ -249,6 +244,53 @@ impl Soup<'_> {
         let mut found = self.meeting(pairs);
         self.drop_touching(&mut found);
         found
+    }
+
+    /// The pairs of triangles of some pairs of faces that [meet](Soup::meet). All triangles of a face are
+    /// together, and the faces are in order.
+    fn meeting_of_faces(&self, pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
+        let place = |face: u32| self.owners.partition_point(|&owner| owner < face) as u32;
+        let ranges = spread(pairs, |pair| [pair.map(|face| place(face)..place(face + 1))]);
+        let mut large = FxHashSet::default();
+        let mut small = vec![];
+        for (pair, [a, b]) in pairs.iter().zip(ranges) {
+            match a.len() * b.len() > TOGETHER {
+                true => _ = large.insert(*pair),
+                false => small.push([a, b]),
+            }
+        }
+        let mut found = spread(&small, |[a, b]| {
+            let mut found = vec![];
+            for i in a.clone() {
+                for j in if a == b { i + 1..b.end } else { b.clone() } {
+                    if self.are_near(i, j) && self.meet(i, j) {
+                        found.push([i, j]);
+                    }
+                }
+            }
+            found
+        });
+        if !large.is_empty() {
+            let faces: FxHashSet<u32> = large.iter().flatten().copied().collect();
+            let all = 0..self.owners.len() as u32;
+            let members = all.filter(|&t| faces.contains(&self.owners[t as usize]));
+            let members: Vec<u32> = members.collect();
+            let boxes: Vec<Bounds> = members.iter().map(|&t| self.boxes[t as usize]).collect();
+            let mut near = vec![];
+            Bvh::new(&boxes).self_pairs(|i, j| {
+                let [i, j] = [i, j].map(|k| members[k as usize]);
+                let [f, g] = [i, j].map(|t| self.owners[t as usize]);
+                if large.contains(&[f.min(g), f.max(g)]) {
+                    near.push([i, j]);
+                }
+            });
+            found.extend(self.meeting(&near));
+        }
+        found
+    }
+
+    fn are_near(&self, i: u32, j: u32) -> bool {
+        self.boxes[i as usize].meets(&self.boxes[j as usize])
     }
 
     /// Those of the pairs of triangles that [meet](Soup::meet).

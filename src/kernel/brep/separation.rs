@@ -267,7 +267,7 @@ mod tests {
             dvec3(0., 4., 0.),
             dvec3(1., 1., -1.),
             dvec3(1., 1., 1.),
-            dvec3(4., 4., 0.),
+            dvec3(5., 5., 0.),
         ];
         let mut mesh = PolyMesh::with_points(corners.to_vec());
         let (plane, origin) = (mesh.add_plane(), mesh.add_origin(Origin::of(Surface::Plane)));

@@ -133,7 +133,7 @@ struct Arranged<'g> {
 }
 
 /// Planes that are arranged together by one thread.
-const CHUNK: usize = 64;
+const CHUNK: usize = 16;
 
 impl Planes<'_> {
     /// Cuts all facets of all planes: at the same time those in which no new points arise, and then

@@ -59,8 +59,6 @@ struct Draft {
     polygons: Vec<u32>,
     /// The point of each vertex, so far as it has one.
     points: Vec<u32>,
-    /// The number of vertices that are not carried over.
-    own_points: u32,
     /// The faces that may cross others: with a vertex that is no lattice point, bent, or moved.
     suspects: Vec<u32>,
 }
@@ -75,22 +73,18 @@ impl Assembly<'_> {
         let mut strict = Strict::default();
         let mut rounds = 0..ROUNDS;
         loop {
-            let draft = self.draft(&strict)?;
-            let (mesh, faces) = (&draft.mesh, draft.polygons.len());
-            let (tangle, is_sound) = rayon::join(
-                || tangle(mesh, faces, &draft.suspects),
-                || Polyhedron::is_seam_sound(mesh, faces, draft.own_points),
+            let (draft, carried) = self.draft(&strict)?;
+            let faces = draft.polygons.len();
+            let ((tangle, flat), solid) = rayon::join(
+                || match tangle(&draft.mesh, faces, &draft.suspects) {
+                    None => (None, self.flat_triangle(&draft)),
+                    found => (found, None),
+                },
+                || self.finished(draft.mesh.clone(), carried),
             );
             match (tangle, rounds.next()) {
                 (Some(tangle), Some(_)) => self.hold_apart(&tangle, &draft, &mut strict),
-                (tangle, _) => {
-                    let flat = self.flat_triangle(&draft);
-                    let solid = match is_sound {
-                        true => Polyhedron::trusted(draft.mesh),
-                        false => Polyhedron::new(draft.mesh).ok()?,
-                    };
-                    return Some((solid, tangle.map(|t| t.place).or(flat)));
-                }
+                (tangle, _) => return Some((solid?, tangle.map(|t| t.place).or(flat))),
             }
         }
     }
@@ -104,6 +98,20 @@ impl Assembly<'_> {
         };
         let faces = if all.is_empty() { &draft.suspects } else { &all };
         flat_triangle(&draft.mesh, faces, &draft.points)
+    }
+
+    /// The solid of the arranged faces and those that are carried over; `None` if it is open.
+    fn finished(&self, mut mesh: PolyMesh, carried: (Carried<'_>, Vec<u32>)) -> Option<Polyhedron> {
+        let (faces, points) = (mesh.face_count(), mesh.points.len() as u32);
+        let (carried, origins) = carried;
+        carried.add_faces(&origins, &mut mesh);
+        if self.plan.frame.mirrors() {
+            mesh.flip();
+        }
+        if Polyhedron::is_seam_sound(&mesh, faces, points) {
+            return Some(Polyhedron::trusted(mesh));
+        }
+        Polyhedron::new(mesh).ok()
     }
 
     /// Takes what is around crossing faces as it is on the lattice.
@@ -122,8 +130,9 @@ impl Assembly<'_> {
         strict.cells.extend(cells);
     }
 
-    /// The mesh of the result, placed; `None` if it is open.
-    fn draft(&self, strict: &Strict) -> Option<Draft> {
+    /// The arranged faces of the result, placed, and those that are carried over, with their origins; `None`
+    /// if it is open.
+    fn draft(&self, strict: &Strict) -> Option<(Draft, (Carried<'_>, Vec<u32>))> {
         let mut labels = Labels::new(self.plan, self.facets).holding_apart(strict.cells.clone());
         let boundary = Boundary::of(self.complex, self.sides, &mut labels);
         if boundary.is_open(self.borders) {
@@ -143,12 +152,7 @@ impl Assembly<'_> {
             draft.mesh.add_origin(origin);
         }
         self.add_faces(&boundary, &outline, &loops, &mut draft);
-        draft.own_points = draft.mesh.points.len() as u32;
-        carried.add_faces(&carried_origins, &mut draft.mesh);
-        if self.plan.frame.mirrors() {
-            draft.mesh.flip();
-        }
-        Some(draft)
+        Some((draft, (carried, carried_origins)))
     }
 
     /// Every loop as mesh points, and for every edge a number that both its sides share; and a mesh

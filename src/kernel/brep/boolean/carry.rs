@@ -1,7 +1,7 @@
 //! Patches of the result: faces carried over from their leaves as they stand.
 
 use super::{assemble::Assembly, origins::Labels, patch::Patch, space::NONE};
-use crate::geom::{FaceRef, PolyMesh};
+use crate::geom::PolyMesh;
 
 /// The patches of the result on their way into its mesh.
 pub(super) struct Carried<'a> {
@@ -57,60 +57,39 @@ impl<'a> Carried<'a> {
 
     /// Adds all faces, whose origins are given.
     pub fn add_faces(mut self, origins: &[u32], mesh: &mut PolyMesh) {
-        let (mut origins, mut loops) = (origins.iter(), vec![]);
+        let mut origins = origins.iter();
         // Most faces are quadrilaterals or triangles, with about one point each at most.
         mesh.reserve(origins.len(), 4 * origins.len());
         mesh.points.reserve(origins.len());
         for (patch, straight) in std::mem::take(&mut self.patches) {
+            self.add_points(patch, mesh);
             let leaf = &self.assembly.plan.leaves[patch.leaf as usize];
             let turned = leaf.local.mirrors() == straight;
+            let numbers = &self.points[patch.leaf as usize];
+            let planes = &mut self.planes[patch.leaf as usize][usize::from(straight)];
             for (&face, &origin) in patch.faces.iter().zip(&mut origins) {
                 let face = leaf.solid.mesh().face(face as usize);
-                let slot = &mut self.planes[patch.leaf as usize][usize::from(straight)];
-                let plane = &mut slot[face.plane() as usize];
+                let plane = &mut planes[face.plane() as usize];
                 if *plane == NONE {
                     *plane = mesh.add_plane();
                 }
-                let plane = *plane;
-                let count = self.read_loops(patch.leaf, face, turned, mesh, &mut loops);
-                mesh.push_face(&loops[..count], plane, origin);
+                let labels = (*plane, origin);
+                mesh.push_renamed(face, turned, labels, |corner| numbers[corner as usize]);
             }
         }
     }
 
-    /// Reads the loops of a face as mesh points, reversed if the face is turned over, into lists that
-    /// are used again; how many there are.
-    fn read_loops(
-        &mut self,
-        leaf: u32,
-        face: FaceRef<'_>,
-        turned: bool,
-        mesh: &mut PolyMesh,
-        loops: &mut Vec<Vec<u32>>,
-    ) -> usize {
-        let source = &self.assembly.plan.leaves[leaf as usize];
-        let numbers = &mut self.points[leaf as usize];
-        let mut number = |corner: u32| {
+    /// Adds the points of a patch that the mesh does not have yet.
+    fn add_points(&mut self, patch: &Patch, mesh: &mut PolyMesh) {
+        let source = &self.assembly.plan.leaves[patch.leaf as usize];
+        let (numbers, from) = (&mut self.points[patch.leaf as usize], source.solid.mesh());
+        let faces = patch.faces.iter().map(|&face| from.face(face as usize));
+        for &corner in faces.flat_map(|face| face.loops()).flatten() {
             let slot = &mut numbers[corner as usize];
             if *slot == NONE {
                 *slot = mesh.points.len() as u32;
-                mesh.points.push(source.full.point(source.solid.mesh().points[corner as usize]));
+                mesh.points.push(source.full.point(from.points[corner as usize]));
             }
-            *slot
-        };
-        let mut count = 0;
-        for corners in face.loops() {
-            if count == loops.len() {
-                loops.push(vec![]);
-            }
-            let list = &mut loops[count];
-            list.clear();
-            list.extend(corners.iter().map(|&corner| number(corner)));
-            if turned {
-                list.reverse();
-            }
-            count += 1;
         }
-        count
     }
 }

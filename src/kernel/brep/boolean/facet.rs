@@ -5,6 +5,7 @@
 //! its corners are put on the edges it collapsed onto, so that both sides of those are split alike.
 
 use glam::DVec3;
+use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::{
@@ -78,15 +79,40 @@ impl Facets {
     ) -> (Facets, Sources) {
         let (mut facets, mut sources) = (Facets::default(), Sources::default());
         let mut dropped = vec![];
-        for (number, leaf) in leaves.iter().enumerate() {
-            let leaf = (number as u32, leaf, &patches.leaves[number]);
-            let points = sources.add_leaf(leaf, lattice, space);
-            facets.add_leaf(leaf, &points, space, &mut dropped);
+        let leaf = |number: usize| (number as u32, &leaves[number], &patches.leaves[number]);
+        let numbers = 0..leaves.len();
+        let points: Vec<Vec<u32>> =
+            numbers.clone().map(|n| sources.add_leaf(leaf(n), lattice, space)).collect();
+        let space = &*space;
+        let parts = numbers.into_par_iter().zip(points).map(|(number, points)| {
+            let (mut facets, mut dropped) = (Facets::default(), vec![]);
+            facets.add_leaf(leaf(number), &points, space, &mut dropped);
+            (facets, dropped)
+        });
+        for (part, flat) in parts.collect::<Vec<_>>() {
+            facets.append(part);
+            dropped.extend(flat);
         }
         facets.has_dropped = !dropped.is_empty();
         facets.has_collapsed |= facets.has_dropped;
         facets.register(&dropped, space);
         (facets, sources)
+    }
+
+    /// Adds the facets of an operand that were collected on their own.
+    fn append(&mut self, other: Facets) {
+        let (loops, corners) = (self.loop_ends.len() as u32, self.corners.len() as u32);
+        let owner = self.owner_ends.len() as u32;
+        self.list.extend(other.list.into_iter().map(|facet| Facet {
+            owner,
+            loops: (facet.loops.0 + loops, facet.loops.1 + loops),
+            ..facet
+        }));
+        self.corners.extend(other.corners);
+        self.supports.extend(other.supports);
+        self.loop_ends.extend(other.loop_ends.into_iter().map(|end| end + corners));
+        self.has_collapsed |= other.has_collapsed;
+        self.end_owner();
     }
 
     /// All facets in order.
@@ -150,13 +176,35 @@ impl Facets {
         if let Some(known) = self.list[facet as usize].plane {
             return known;
         }
-        let at = |p: u32| space.lattice_point(p).expect("a corner is a lattice point");
-        let area = polygon::area_vector(self.loops(facet), &at);
-        let first = self.loops(facet).next().map_or([0; 3], |l| at(l[0]));
-        let (plane, turned) = Plane::through(area, first).expect("a facet has an area");
+        let (plane, turned) = self.exact_plane(facet, space);
         let found = (space.add_plane(plane), turned);
         self.list[facet as usize].plane = Some(found);
         found
+    }
+
+    fn exact_plane(&self, facet: u32, space: &Space) -> (Plane, bool) {
+        let at = |p: u32| space.lattice_point(p).expect("a corner is a lattice point");
+        let area = polygon::area_vector(self.loops(facet), &at);
+        let first = self.loops(facet).next().map_or([0; 3], |l| at(l[0]));
+        Plane::through(area, first).expect("a facet has an area")
+    }
+
+    /// Finds the [planes](Facets::plane) of some facets, in the order in which they are first met.
+    pub fn find_planes(&mut self, facets: impl Iterator<Item = u32>, space: &mut Space) {
+        let mut is_met = vec![false; self.list.len()];
+        let is_new = |&facet: &u32| {
+            let known = self.list[facet as usize].plane.is_some();
+            !known && !std::mem::replace(&mut is_met[facet as usize], true)
+        };
+        let new: Vec<u32> = facets.filter(is_new).collect();
+        let find = |&facet: &u32| self.exact_plane(facet, space);
+        let planes: Vec<(Plane, bool)> = match new.len() > FEW {
+            true => new.par_iter().with_min_len(FEW / 2).map(find).collect(),
+            false => new.iter().map(find).collect(),
+        };
+        for (facet, (plane, turned)) in new.into_iter().zip(planes) {
+            self.list[facet as usize].plane = Some((space.add_plane(plane), turned));
+        }
     }
 
     /// Finds the supports of all edges of a facet.
@@ -279,17 +327,28 @@ impl Facets {
         alone
     }
 
+    /// Makes room for so many facets of one loop, most with four corners at most.
+    pub fn reserve(&mut self, count: usize) {
+        self.list.reserve(count);
+        self.loop_ends.reserve(count);
+        self.corners.reserve(4 * count);
+        self.supports.reserve(4 * count);
+    }
+
     /// Adds a facet of another list, turned over if `flip`.
     pub fn push_copy(&mut self, others: &Facets, number: u32, flip: bool) {
         let start = self.loop_ends.len() as u32;
         let mut facet = others.list[number as usize];
-        for (corners, supports) in others.supported_loops(number) {
+        for range in others.ranges(number) {
+            let (corners, supports) = (&others.corners[range.clone()], &others.supports[range]);
             if flip {
                 let last = supports[corners.len() - 1];
                 let supports = supports[..corners.len() - 1].iter().rev().chain([&last]);
                 self.push_loop(corners.iter().rev().copied().zip(supports.copied()));
             } else {
-                self.push_loop(corners.iter().copied().zip(supports.iter().copied()));
+                self.corners.extend_from_slice(corners);
+                self.supports.extend_from_slice(supports);
+                self.loop_ends.push(self.corners.len() as u32);
             }
         }
         facet.loops = (start, self.loop_ends.len() as u32);
@@ -362,15 +421,35 @@ fn strictly_between(space: &Space, a: u32, b: u32, c: u32) -> bool {
 
 /// The box of all corners of all leaves in the frame of the operation.
 pub(super) fn extent(leaves: &[Leaf]) -> (DVec3, DVec3) {
-    let mut range = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for leaf in leaves {
-        for &p in &leaf.solid.mesh().points {
+    let nothing = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let with = |a: (DVec3, DVec3), b: (DVec3, DVec3)| (a.0.min(b.0), a.1.max(b.1));
+    let around = |(leaf, points): (&Leaf, &[DVec3])| {
+        let mut range = nothing;
+        for &p in points {
             let placed = leaf.local.point(p);
             if !placed.is_finite() {
-                return (DVec3::NEG_INFINITY, DVec3::INFINITY);
+                return (DVec3::splat(f64::NEG_INFINITY), DVec3::INFINITY);
             }
-            range = (range.0.min(placed), range.1.max(placed));
+            range = with(range, (placed, placed));
         }
-    }
+        range
+    };
+    let parts = leaves
+        .iter()
+        .flat_map(|leaf| leaf.solid.mesh().points.chunks(CHUNK).map(move |points| (leaf, points)));
+    let parts: Vec<_> = parts.collect();
+    let range = match parts.len() {
+        0..MANY => parts.into_iter().map(around).fold(nothing, with),
+        _ => parts.into_par_iter().with_min_len(MANY / 2).map(around).reduce(|| nothing, with),
+    };
     if range.0.x > range.1.x { (DVec3::ZERO, DVec3::ZERO) } else { range }
 }
+
+/// Planes of so few facets are found by one thread.
+const FEW: usize = 128;
+
+/// Points that are looked at together by one thread.
+const CHUNK: usize = 4096;
+
+/// So many lots of points are worth a second thread.
+const MANY: usize = 4;

@@ -43,9 +43,7 @@ pub(super) struct Meetings {
 /// Finds all traces that the given pairs of facets leave on each other. The planes of all facets in
 /// pairs are known afterwards.
 pub(super) fn meetings(facets: &mut Facets, pairs: &[(u32, u32)], space: &mut Space) -> Meetings {
-    for facet in pairs.iter().flat_map(|&(f, g)| [f, g]) {
-        facets.plane(facet, space);
-    }
+    facets.find_planes(pairs.iter().flat_map(|&(f, g)| [f, g]), space);
     let count = facets.list().len();
     let mut meetings =
         Meetings { traces: vec![], coplanar: Sets::new(count), grouped: vec![false; count] };
@@ -79,7 +77,7 @@ struct Involved {
 }
 
 /// Pairs that are looked at together by one thread.
-const CHUNK: usize = 512;
+const CHUNK: usize = 128;
 
 /// What pairs of facets do to each other, where they do; nothing is changed by looking.
 fn findings(pairs: &[(u32, u32)], facets: &Facets, space: &Space) -> Vec<(u32, Finding)> {
@@ -109,20 +107,23 @@ pub(super) fn candidates(facets: &Facets, trusted: bool) -> Vec<(u32, u32)> {
         list.iter().fold(Bounds::EMPTY, |all, f| all.with(f.bounds))
     };
     let owners = Hierarchy::new(ranges.iter().map(bounds));
-    let mut trees: Vec<Option<Hierarchy>> = ranges.iter().map(|_| None).collect();
-    let tree = |owner: usize| {
-        Hierarchy::new(facets.list()[ranges[owner].clone()].iter().map(|f| f.bounds))
-    };
     let mut owner_pairs = vec![];
     owners.own_pairs(|a, b| owner_pairs.push((a as usize, b as usize)));
     if !trusted {
         owner_pairs.extend((0..ranges.len()).map(|owner| (owner, owner)));
     }
     owner_pairs.sort_unstable();
+    let mut is_met = vec![false; ranges.len()];
+    owner_pairs.iter().for_each(|&(a, b)| (is_met[a], is_met[b]) = (true, true));
+    let tree = |(range, is_met): (&std::ops::Range<usize>, &bool)| {
+        let bounds = facets.list()[range.clone()].iter().map(|f| f.bounds);
+        is_met.then(|| Hierarchy::new(bounds))
+    };
+    let trees: Vec<Option<Hierarchy>> = match facets.list().len() > LARGE {
+        true => ranges.par_iter().zip(&is_met).map(tree).collect(),
+        false => ranges.iter().zip(&is_met).map(tree).collect(),
+    };
     for (a, b) in owner_pairs {
-        for owner in [a, b] {
-            trees[owner].get_or_insert_with(|| tree(owner));
-        }
         let (Some(first), Some(second)) = (&trees[a], &trees[b]) else { continue };
         let (start, other) = (ranges[a].start as u32, ranges[b].start as u32);
         first.pairs(second, |f, g| {
@@ -133,6 +134,9 @@ pub(super) fn candidates(facets: &Facets, trusted: bool) -> Vec<(u32, u32)> {
     }
     pairs
 }
+
+/// So many facets are worth a second thread.
+const LARGE: usize = 2000;
 
 /// Corners of dropped facets that lie on edges of others are single points there.
 fn extra_points(facets: &Facets, traces: &mut Vec<Trace>) {

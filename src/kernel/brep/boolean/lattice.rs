@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use crate::geom::predicates::{Int3, RANGE};
+use crate::geom::predicates::RANGE;
 
 /// Powers of ten up to this one are exact doubles.
 const EXACT_POWER: i32 = 22;
@@ -86,15 +86,22 @@ impl Lattice {
     }
 
     /// The nearest lattice point, counted from the centre.
-    pub fn snap(&self, point: DVec3) -> Int3 {
+    pub fn snap(&self, point: DVec3) -> [i32; 3] {
         let p = point.to_array();
-        std::array::from_fn(|i| (self.count(p[i]).round() - self.center[i]) as i64)
+        std::array::from_fn(|i| (rounded(self.count(p[i])) - self.center[i]) as i32)
     }
 
     /// The place of a point given in steps from the centre, mm.
     pub fn place(&self, local: [f64; 3]) -> DVec3 {
         DVec3::from_array(std::array::from_fn(|i| self.length(local[i] + self.center[i])))
     }
+}
+
+/// The nearest whole number, away from 0 between two, as `f64::round` has it; of counts, which fit into an
+/// integer, it is found faster.
+fn rounded(count: f64) -> f64 {
+    let cut = count as i64 as f64;
+    if (count - cut).abs() >= 0.5 { cut + count.signum() } else { cut }
 }
 
 /// Doubles far from the origin are themselves a lattice of 2^-53 times their size; a finer lattice
@@ -117,7 +124,7 @@ mod tests {
         for text in ["0.1", "12.345", "-99.999", "0.3", "299.7", "17.0005"] {
             let value: f64 = text.parse().expect("a number");
             let index = lattice.snap(DVec3::splat(value));
-            assert_eq!(lattice.place(index.map(|i| i as f64)), DVec3::splat(value), "{text}");
+            assert_eq!(lattice.place(index.map(f64::from)), DVec3::splat(value), "{text}");
         }
     }
 
@@ -127,9 +134,9 @@ mod tests {
         let coarse = fine.coarsened(3);
         assert!((coarse.step() - 10.0 * fine.step()).abs() < 1e-20);
         let point = DVec3::new(101.25, 200.5, 299.0);
-        let back = coarse.place(coarse.snap(point).map(|i| i as f64));
+        let back = coarse.place(coarse.snap(point).map(f64::from));
         assert_eq!(back, point);
-        assert!(coarse.snap(point).iter().all(|c| c.abs() < RANGE / 8));
+        assert!(coarse.snap(point).iter().all(|&c| i64::from(c).abs() < RANGE / 8));
     }
 
     #[test]
@@ -138,8 +145,11 @@ mod tests {
             let (min, max) = (DVec3::splat(min), DVec3::splat(max));
             let lattice = Lattice::covering(min, max).expect("finite");
             for p in [min, max] {
-                assert!(lattice.snap(p).iter().all(|c| c.abs() <= RANGE), "{min} {max}");
-                let back = lattice.place(lattice.snap(p).map(|i| i as f64));
+                assert!(
+                    lattice.snap(p).iter().all(|&c| i64::from(c).abs() <= RANGE),
+                    "{min} {max}"
+                );
+                let back = lattice.place(lattice.snap(p).map(f64::from));
                 assert!((back - p).abs().max_element() <= lattice.step());
             }
         }

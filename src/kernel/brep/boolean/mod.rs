@@ -172,7 +172,8 @@ pub const CORNERS: usize = 1 << 28;
 /// # Ok::<(), katachi::kernel::brep::boolean::BooleanError>(())
 /// ```
 pub fn evaluate(tree: &Tree) -> Result<Evaluated, BooleanError> {
-    evaluate_at(tree, &Placement::IDENTITY)
+    // Work is handed over faster among the threads of the pool than from outside.
+    rayon::scope(|_| evaluate_at(tree, &Placement::IDENTITY))
 }
 
 /// Evaluates a tree whose result stands at `outer`.

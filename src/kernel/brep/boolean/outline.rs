@@ -208,11 +208,14 @@ impl Walks {
                 is_simple &= *met != number;
                 *met = number;
             }
-            let parts = if is_simple { vec![halves.to_vec()] } else { simple(halves.to_vec(), at) };
-            for part in parts {
+            let mut add = |part: &[u32]| {
                 let from = all.len() as u32;
-                all.extend(part);
+                all.extend_from_slice(part);
                 loops.push(Loop { polygon: walk.polygon, from, to: all.len() as u32 });
+            };
+            match is_simple {
+                true => add(halves),
+                false => simple(halves.to_vec(), at).iter().for_each(|part| add(part)),
             }
         }
         loops.sort_by_key(|l| l.polygon);

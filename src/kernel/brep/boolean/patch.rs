@@ -39,7 +39,7 @@ pub(super) struct Patch {
 #[derive(Default)]
 pub(super) struct Snapped {
     /// The points.
-    pub points: Vec<Int3>,
+    pub points: Vec<[i32; 3]>,
     /// For each face whether it is in a patch; empty if none is.
     resting: Vec<bool>,
     /// The patch of each point, or [`NONE`]; empty if there is none.
@@ -80,10 +80,10 @@ impl Patches {
     /// Snaps all leaves; finds their patches if `resting`.
     pub fn of(leaves: &[Leaf], lattice: &Lattice, resting: bool) -> Patches {
         let snap = |leaf: &Leaf| {
-            let points = leaf.solid.mesh().points.iter();
-            points.map(|&p| lattice.snap(leaf.local.point(p))).collect::<Vec<Int3>>()
+            let points = leaf.solid.mesh().points.par_iter().with_min_len(CHUNK);
+            points.map(|&p| lattice.snap(leaf.local.point(p))).collect::<Vec<[i32; 3]>>()
         };
-        let points: Vec<Vec<Int3>> = leaves.par_iter().map(snap).collect();
+        let points: Vec<Vec<[i32; 3]>> = leaves.par_iter().map(snap).collect();
         let mut patches = Patches { leaves: vec![], list: vec![] };
         let is_large = |leaf: &Leaf| leaf.solid.mesh().face_count() >= LARGE;
         let found: Vec<Found> = if resting && leaves.iter().any(is_large) {
@@ -91,35 +91,19 @@ impl Patches {
         } else {
             leaves.iter().map(|_| None).collect()
         };
-        for ((leaf, points), found) in leaves.iter().zip(points).zip(found) {
-            match found {
-                Some((resting, sets)) => patches.add(leaf.solid.mesh(), points, resting, sets),
-                None => patches.leaves.push(Snapped { points, resting: vec![], patches: vec![] }),
-            }
+        let group = |((leaf, points), found): ((&Leaf, Vec<[i32; 3]>), Found)| match found {
+            Some(found) => found.grouped(leaf.solid.mesh(), points),
+            None => (Snapped { points, resting: vec![], patches: vec![] }, vec![]),
+        };
+        let leaves: Vec<_> = leaves.par_iter().zip(points).zip(found).map(group).collect();
+        for (number, (mut snapped, mut list)) in (0u32..).zip(leaves) {
+            let before = patches.list.len() as u32;
+            snapped.patches.iter_mut().filter(|p| **p != NONE).for_each(|patch| *patch += before);
+            list.iter_mut().for_each(|patch| patch.leaf = number);
+            patches.leaves.push(snapped);
+            patches.list.extend(list);
         }
         patches
-    }
-
-    /// Groups the resting faces of a leaf into patches.
-    fn add(&mut self, mesh: &PolyMesh, points: Vec<Int3>, resting: Vec<bool>, mut sets: Sets) {
-        let leaf = self.leaves.len() as u32;
-        let mut numbers = vec![NONE; points.len()];
-        let mut patches = vec![NONE; points.len()];
-        for face in mesh.faces().filter(|f| resting[f.index()]) {
-            let number = &mut numbers[sets.find(face.outer()[0]) as usize];
-            if *number == NONE {
-                *number = self.list.len() as u32;
-                self.list.push(Patch { leaf, faces: vec![], bounds: Bounds::EMPTY });
-            }
-            let patch = &mut self.list[*number as usize];
-            patch.faces.push(face.index() as u32);
-            for &corner in face.loops().flatten() {
-                patches[corner as usize] = *number;
-                let at = points[corner as usize].map(|c| c as i32);
-                patch.bounds = patch.bounds.with(Bounds { min: at, max: at });
-            }
-        }
-        self.leaves.push(Snapped { points, resting, patches });
     }
 
     /// Which patch each point borders on, given the leaves' corners that the points are.
@@ -143,78 +127,145 @@ impl Patches {
         let loops = faces.iter().flat_map(|&f| leaf.solid.mesh().face(f as usize).loops());
         loops.flat_map(move |corners| {
             corners[1..].windows(2).map(move |pair| {
-                let [a, b, c] = [corners[0], pair[0], pair[1]].map(|i| points[i as usize]);
+                let [a, b, c] =
+                    [corners[0], pair[0], pair[1]].map(|i| points[i as usize].map(i64::from));
                 if mirrors { [a, c, b] } else { [a, b, c] }
             })
         })
     }
 }
 
+/// Points that one thread looks at together.
+const CHUNK: usize = 4096;
+
 /// Puts the points of a face into one set.
 fn join_corners(face: FaceRef<'_>, sets: &mut Sets) {
-    let first = face.outer()[0];
-    face.loops().flatten().for_each(|&corner| sets.join(first, corner));
+    let mut least = sets.find(face.outer()[0]);
+    for &corner in face.loops().flatten() {
+        least = sets.join_least(least, corner);
+    }
 }
 
-fn bounds(face: FaceRef<'_>, points: &[Int3]) -> Bounds {
-    let corners = face.outer().iter().map(|&c| points[c as usize].map(|x| x as i32));
-    corners.fold(Bounds::EMPTY, |all, p| all.with(Bounds { min: p, max: p }))
+fn bounds(face: FaceRef<'_>, points: &[[i32; 3]]) -> Bounds {
+    let mut bounds = Bounds::EMPTY;
+    for &corner in face.outer() {
+        let at = points[corner as usize];
+        bounds = bounds.with(Bounds { min: at, max: at });
+    }
+    bounds
 }
 
-/// For each face of a leaf whether it may rest, and the points that such faces hold together (and
-/// perhaps some that were found to be needed).
-type Found = Option<(Vec<bool>, Sets)>;
+/// What is found about the faces of a large leaf.
+struct Large {
+    /// Whether each may rest.
+    resting: Vec<bool>,
+    /// Their boxes.
+    boxes: Vec<Bounds>,
+    /// The points that resting faces hold together, and perhaps some that were found to be needed.
+    sets: Sets,
+}
+
+type Found = Option<Large>;
+
+impl Large {
+    /// Groups the resting faces into patches, whose leaf is not given yet.
+    fn grouped(mut self, mesh: &PolyMesh, points: Vec<[i32; 3]>) -> (Snapped, Vec<Patch>) {
+        let mut list: Vec<Patch> = vec![];
+        let mut numbers = vec![NONE; points.len()];
+        let mut patches = vec![NONE; points.len()];
+        for face in mesh.faces().filter(|f| self.resting[f.index()]) {
+            let number = &mut numbers[self.sets.find(face.outer()[0]) as usize];
+            if *number == NONE {
+                *number = list.len() as u32;
+                list.push(Patch { leaf: NONE, faces: vec![], bounds: Bounds::EMPTY });
+            }
+            let patch = &mut list[*number as usize];
+            patch.faces.push(face.index() as u32);
+            patch.bounds = patch.bounds.with(self.boxes[face.index()]);
+            face.loops().flatten().for_each(|&corner| patches[corner as usize] = *number);
+        }
+        (Snapped { points, resting: self.resting, patches }, list)
+    }
+}
 
 /// Which faces of each leaf may rest.
-fn resting_faces(leaves: &[Leaf], points: &[Vec<Int3>]) -> Vec<Found> {
-    let boxes = |(leaf, points): (&Leaf, &Vec<Int3>)| {
-        leaf.solid.mesh().faces().map(|f| bounds(f, points)).collect::<Vec<Bounds>>()
+fn resting_faces(leaves: &[Leaf], points: &[Vec<[i32; 3]>]) -> Vec<Found> {
+    let boxes = |(leaf, points): (&Leaf, &Vec<[i32; 3]>)| {
+        let faces = (0..leaf.solid.mesh().face_count()).into_par_iter().with_min_len(CHUNK);
+        faces.map(|f| bounds(leaf.solid.mesh().face(f), points)).collect::<Vec<Bounds>>()
     };
     let boxes: Vec<Vec<Bounds>> = leaves.par_iter().zip(points).map(boxes).collect();
-    let around: Vec<Bounds> =
-        boxes.iter().map(|b| b.iter().fold(Bounds::EMPTY, |all, b| all.with(*b))).collect();
+    let around: Vec<Bounds> = points
+        .iter()
+        .map(|p| p.iter().fold(Bounds::EMPTY, |all, &p| all.with(Bounds { min: p, max: p })))
+        .collect();
+    let mut met: Vec<(u32, u32)> = vec![];
+    Hierarchy::new(around.iter().copied()).own_pairs(|a, b| met.push((a, b)));
+    let is_large = |leaf: u32| boxes[leaf as usize].len() >= LARGE;
+    met.retain(|&(a, b)| is_large(a) || is_large(b));
     let near: Vec<Vec<(Bounds, u32)>> =
-        (0..leaves.len()).into_par_iter().map(|leaf| near(leaf, &boxes, &around)).collect();
+        (0..leaves.len()).into_par_iter().map(|leaf| near(leaf, &boxes, &around, &met)).collect();
     let tree = |near: &Vec<(Bounds, u32)>| Hierarchy::new(near.iter().map(|n| n.0));
     let trees: Vec<Hierarchy> = near.par_iter().map(tree).collect();
-    let found = (0..leaves.len()).into_par_iter().map(|leaf| {
-        let count = boxes[leaf].len();
-        if count < LARGE {
+    let touched = met.par_iter().map(|&(a, b)| {
+        let mut touched = [vec![], vec![]];
+        trees[a as usize].pairs(&trees[b as usize], |f, g| {
+            touched[0].push(near[a as usize][f as usize].1);
+            touched[1].push(near[b as usize][g as usize].1);
+        });
+        touched
+    });
+    let touched: Vec<[Vec<u32>; 2]> = touched.collect();
+    let mut awake: Vec<Vec<u32>> = vec![vec![]; leaves.len()];
+    for (&(a, b), touched) in met.iter().zip(touched) {
+        for (leaf, touched) in [a, b].into_iter().zip(touched).filter(|t| is_large(t.0)) {
+            awake[leaf as usize].extend(touched);
+        }
+    }
+    let rest = |((leaf, boxes), awake): ((usize, Vec<Bounds>), Vec<u32>)| {
+        if boxes.len() < LARGE {
             return None;
         }
-        let mut resting = vec![true; count];
-        let others = (0..leaves.len()).filter(|&o| o != leaf && around[o].meets(&around[leaf]));
-        for other in others {
-            trees[leaf].pairs(&trees[other], |face, _| {
-                resting[near[leaf][face as usize].1 as usize] = false;
-            });
-        }
+        let mut resting = vec![true; boxes.len()];
+        awake.into_iter().for_each(|face| resting[face as usize] = false);
         let mesh = leaves[leaf].solid.mesh();
         let mut sets = Sets::new(points[leaf].len());
         mesh.faces().filter(|f| resting[f.index()]).for_each(|f| join_corners(f, &mut sets));
         wake(mesh, &points[leaf], &sets, &mut resting);
-        Some((resting, sets))
-    });
-    found.collect()
+        Some(Large { resting, boxes, sets })
+    };
+    boxes.into_par_iter().enumerate().zip(awake).map(rest).collect()
 }
 
-/// The faces of a leaf that others may touch: of a large one those that a grid tells.
-fn near(leaf: usize, boxes: &[Vec<Bounds>], around: &[Bounds]) -> Vec<(Bounds, u32)> {
+/// The faces of a leaf that others may touch: of a large one those that a grid tells. `met` are the pairs of
+/// leaves whose boxes meet.
+fn near(
+    leaf: usize,
+    boxes: &[Vec<Bounds>],
+    around: &[Bounds],
+    met: &[(u32, u32)],
+) -> Vec<(Bounds, u32)> {
     let all = boxes[leaf].iter().copied().zip(0u32..);
     if boxes[leaf].len() < LARGE {
         return all.collect();
     }
-    let mut grid = Grid::new(around[leaf]);
-    let others = (0..boxes.len()).filter(|&o| o != leaf && around[o].meets(&around[leaf]));
-    let others = others.flat_map(|other| &boxes[other]);
-    others.filter(|b| b.meets(&around[leaf])).for_each(|b| grid.mark(b));
-    all.filter(|(bounds, _)| grid.meets(bounds)).collect()
+    let leaf = leaf as u32;
+    let others = met.iter().filter(|m| m.0 == leaf || m.1 == leaf).map(|m| m.0 ^ m.1 ^ leaf);
+    let others: Vec<usize> = others.map(|other| other as usize).collect();
+    let reach = others.iter().fold(Bounds::EMPTY, |all, &other| all.with(around[other]));
+    let mut grid = Grid::new(around[leaf as usize].common(reach));
+    for bounds in others.iter().flat_map(|&other| &boxes[other]) {
+        if bounds.meets(&around[leaf as usize]) {
+            grid.mark(bounds);
+        }
+    }
+    all.filter(|(bounds, _)| bounds.meets(&reach) && grid.meets(bounds)).collect()
 }
 
 /// Takes out of the resting faces what the argument needs: those around the first point of every
 /// shell, those in a plane with faces that take part, those at points of faces that take part which
 /// are one point of the lattice. `sets` are the points that resting faces hold together.
-fn wake(mesh: &PolyMesh, points: &[Int3], sets: &Sets, resting: &mut [bool]) {
+fn wake(mesh: &PolyMesh, points: &[[i32; 3]], sets: &Sets, resting: &mut [bool]) {
     let mut shells = sets.clone();
     for face in mesh.faces().filter(|f| !resting[f.index()]) {
         join_corners(face, &mut shells);
@@ -254,12 +305,12 @@ fn wake_at(mesh: &PolyMesh, awake: &[bool], resting: &mut [bool]) -> bool {
 
 /// Takes the faces at points out of the resting ones that are, on the lattice, one point with another
 /// point of a face that takes part; whether there were any.
-fn wake_shared(mesh: &PolyMesh, points: &[Int3], resting: &mut [bool]) -> bool {
+fn wake_shared(mesh: &PolyMesh, points: &[[i32; 3]], resting: &mut [bool]) -> bool {
     let mut seen: FxHashMap<[i32; 3], u32> = FxHashMap::default();
     let mut shared = vec![];
     for face in mesh.faces().filter(|f| !resting[f.index()]) {
         for &corner in face.loops().flatten() {
-            let place = points[corner as usize].map(|c| c as i32);
+            let place = points[corner as usize];
             let known = *seen.entry(place).or_insert(corner);
             if known != corner {
                 shared.extend([known, corner]);

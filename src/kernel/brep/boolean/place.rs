@@ -41,9 +41,9 @@ impl Sources {
                 }
                 let local = snapped.points[corner as usize];
                 let placed = leaf.local.point(mesh.points[corner as usize]);
-                let moved = (lattice.place(local.map(|c| c as f64)) - placed).length();
+                let moved = (lattice.place(local.map(f64::from)) - placed).length();
                 self.snap = self.snap.max(moved);
-                *slot = space.add_lattice_point(local);
+                *slot = space.add_lattice_point(local.map(i64::from));
                 if *slot as usize == self.list.len() {
                     self.list.push((number, corner));
                 }

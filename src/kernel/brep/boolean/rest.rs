@@ -4,6 +4,8 @@
 //! together at points and border on facets that do take part are a patch: what holds at the border
 //! holds for the patch. Those that border on nothing are a shell of their own.
 
+use rayon::prelude::*;
+
 use super::{
     facet::Facets,
     grid::Grid,
@@ -69,10 +71,11 @@ impl Rest {
         let count = numbers.len() as u32;
         let mut sets = Sets::new(numbers.len());
         for facet in (0..count).filter(|&f| numbers[f as usize] == NONE) {
+            let mut least = facet;
             for &point in facets.loops(facet).flatten() {
                 match &mut holder[point as usize] {
-                    slot if *slot == NONE => *slot = facet,
-                    slot => sets.join(*slot, facet),
+                    slot if *slot == NONE => *slot = least,
+                    slot => least = sets.join_least(least, *slot),
                 }
             }
         }
@@ -107,22 +110,27 @@ impl Rest {
 /// Pairs of facets of different operands, the first with less numbers, whose boxes touch.
 fn touching(operands: &[Facets]) -> Vec<[(u32, u32); 2]> {
     let around: Vec<Bounds> = operands.iter().map(Facets::bounds).collect();
-    let mut found = vec![];
     let mut owners = vec![];
     Hierarchy::new(around.iter().copied()).own_pairs(|a, b| owners.push((a, b)));
-    for (a, b) in owners {
-        let mut near_a = near(&operands[a as usize], &around[b as usize]);
-        let mut near_b = near(&operands[b as usize], &around[a as usize]);
+    let touching = |&(a, b): &(u32, u32)| {
+        let (mut near_a, mut near_b) = rayon::join(
+            || near(&operands[a as usize], &around[b as usize]),
+            || near(&operands[b as usize], &around[a as usize]),
+        );
         if near_a.len().min(near_b.len()) > FEW {
             thin_out(&mut near_a, &near_b, around[b as usize]);
             thin_out(&mut near_b, &near_a, around[a as usize]);
         }
         let tree = |near: &[(Bounds, u32)]| Hierarchy::new(near.iter().map(|n| n.0));
-        tree(&near_a).pairs(&tree(&near_b), |f, g| {
+        let (tree_a, tree_b) = rayon::join(|| tree(&near_a), || tree(&near_b));
+        let mut found = vec![];
+        tree_a.pairs(&tree_b, |f, g| {
             found.push([(a, near_a[f as usize].1), (b, near_b[g as usize].1)]);
         });
-    }
-    found
+        found
+    };
+    let found: Vec<_> = owners.par_iter().map(touching).collect();
+    found.concat()
 }
 
 /// So few facets are not worth a grid.

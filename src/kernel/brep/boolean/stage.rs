@@ -64,9 +64,7 @@ fn active(rest: &Rest, operands: &[Facets], space: &mut Space) -> Facets {
         }
         facets.end_owner();
     }
-    for facet in 0..facets.list().len() as u32 {
-        facets.plane(facet, space);
-    }
+    facets.find_planes(0..facets.list().len() as u32, space);
     facets
 }
 
@@ -109,6 +107,7 @@ const BASES: usize = 16;
 /// Keeps resting facets whose sides differ: the front, then the back.
 fn keep(resting: &Resting, inside: [bool; 2], operands: &[Facets], result: &mut Facets) {
     if inside[0] != inside[1] {
+        result.reserve(resting.facets.len());
         for &facet in &resting.facets {
             result.push_copy(&operands[resting.owner as usize], facet, inside[0]);
         }

@@ -11,6 +11,7 @@ impl Sets {
     }
 
     /// The least member of the set that holds a number.
+    #[inline]
     pub fn find(&mut self, mut number: u32) -> u32 {
         while self.0[number as usize] != number {
             let above = self.0[number as usize];
@@ -18,6 +19,17 @@ impl Sets {
             number = above;
         }
         number
+    }
+
+    /// Joins the set whose least member is given with that of a number; the least member of both.
+    #[inline]
+    pub fn join_least(&mut self, least: u32, number: u32) -> u32 {
+        if self.0[number as usize] == least {
+            return least;
+        }
+        let other = self.find(number);
+        self.0[least.max(other) as usize] = least.min(other);
+        least.min(other)
     }
 
     /// Joins the sets of two numbers.
