@@ -1,18 +1,36 @@
 //! The offset surface before it is freed of its crossings: faces moved, edges bridged, points capped.
 
-use std::sync::Arc;
+use std::{f64::consts::TAU, sync::Arc};
 
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
 use super::{
-    figure::{Figure, Measure, Surroundings},
+    figure::{Figure, Measure, Surroundings, span},
     rings::Rings,
 };
 use crate::geom::{Origin, PolyMesh, Surface, triangulate::triangulate_face};
 
 /// Points of a face that are farther than this from its plane, relative to the coordinates, are not of it.
 const FLAT: f64 = 1e-12;
+
+/// Open points that are worked with: their pieces may all overlap, which takes time that grows with the square
+/// of their number.
+pub(super) const CROWD: usize = 1000;
+
+/// Points of one surface: about a gigabyte while it is made.
+pub(super) const CORNERS: usize = 4_000_000;
+
+/// Chords of a full turn; a cap has about a tenth of their square.
+const CHORDS: f64 = 4000.0;
+
+/// What there would be too many of.
+pub(super) enum TooMany {
+    /// Points of the surface, and about how many it would have.
+    Corners(f64),
+    /// Points to be opened.
+    Turned,
+}
 
 /// The surface and what is known of it.
 pub(super) struct Raw {
@@ -26,12 +44,14 @@ pub(super) struct Raw {
 /// It is the boundary of pieces that are added up: the solid, what each face sweeps over, and what lies around
 /// convex edges and points. All of them count once, so that the surface winds around what is in any of them.
 /// Where a face or a strip would be turned over, and count against the others, its points are opened.
-pub(super) fn raw(mesh: &PolyMesh, measure: Measure) -> Raw {
+///
+/// Refused are more than [`CORNERS`] points, and more than [`CROWD`] that would have to be opened.
+pub(super) fn raw(mesh: &PolyMesh, measure: Measure) -> Result<Raw, TooMany> {
     let rings = Rings::of(mesh);
     let mut open = vec![false; mesh.points.len()];
     loop {
         let mut builder = Builder::new(mesh, &rings, measure, &open);
-        builder.points();
+        builder.points()?;
         builder.faces();
         builder.edges();
         let Builder { mut out, folded, turned, .. } = builder;
@@ -39,7 +59,10 @@ pub(super) fn raw(mesh: &PolyMesh, measure: Measure) -> Raw {
         turned.iter().for_each(|&point| open[point as usize] = true);
         if open == before {
             out.drop_unused_points();
-            return Raw { mesh: out, folded };
+            return Ok(Raw { mesh: out, folded });
+        }
+        if open.iter().filter(|open| **open).count() > CROWD {
+            return Err(TooMany::Turned);
         }
     }
 }
@@ -92,8 +115,13 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn points(&mut self) {
-        for point in 0..self.mesh.points.len() as u32 {
+    fn points(&mut self) -> Result<(), TooMany> {
+        let turn = TAU / span(self.measure.chord);
+        if turn > CHORDS {
+            return Err(TooMany::Corners(CORNERS as f64 * (turn / CHORDS).powi(2)));
+        }
+        let all = self.mesh.points.len();
+        for point in 0..all as u32 {
             let fan = &self.rings.around[point as usize];
             if fan.is_empty() {
                 continue;
@@ -101,7 +129,12 @@ impl<'a> Builder<'a> {
             let around = Surroundings::of(self.rings, &self.mesh.points, point, self.measure);
             let figure = around.figure(self.measure, self.open[point as usize]);
             self.place(point, &figure);
+            let made = self.out.points.len();
+            if made > CORNERS {
+                return Err(TooMany::Corners(made as f64 * all as f64 / f64::from(point + 1)));
+            }
         }
+        Ok(())
     }
 
     /// Puts the figure of a point in its place.
