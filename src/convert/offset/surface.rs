@@ -16,7 +16,7 @@ const FLAT: f64 = 1e-12;
 
 /// Open points that are worked with: their pieces may all overlap, which takes time that grows with the square
 /// of their number.
-pub(super) const CROWD: usize = 1000;
+pub(super) const CROWD: usize = 300;
 
 /// Points of one surface: about a gigabyte while it is made.
 pub(super) const CORNERS: usize = 4_000_000;
