@@ -20,6 +20,10 @@ pub(super) struct Measure {
     pub radius: f64,
     /// Whether convex edges become round; otherwise faces are prolonged until they meet.
     pub round: bool,
+    /// Whether facets of spheres and cylinders move as these do.
+    pub curved: bool,
+    /// Points that may be opened.
+    pub crowd: usize,
     /// What a chord may be off its arc, in radii.
     pub chord: f64,
     /// What a mitre may be off its planes, and an arc off its edge, in radii.

@@ -33,7 +33,7 @@ pub use self::{
     proof::{Deviation, deviation},
 };
 use crate::{
-    geom::{Placement, Tolerance, sides},
+    geom::{Placement, Surface, Tolerance, sides},
     kernel::{
         brep::{
             Polyhedron,
@@ -138,8 +138,29 @@ fn offset_once(
     made: Tolerance,
     allowed: Tolerance,
 ) -> Result<Polyhedron, OffsetError> {
-    let grown = uncrossed(raw_surface(solid, by, measure(by, made), made)?)?;
-    proved(solid, grown, by, allowed)
+    let whole = measure(by, made);
+    let attempt = |measure: Measure| {
+        let grown = uncrossed(raw_surface(solid, by, measure, made)?)?;
+        proved(solid, grown, by, allowed)
+    };
+    // Nothing is turned over, mostly. What shrinks onto the centres of its own spheres and cylinders falls
+    // together as these do; only then is the surface made of pieces that lie over each other.
+    match attempt(Measure { crowd: 0, ..whole }) {
+        Err(OffsetError::Crowded { .. }) => {}
+        done => return done,
+    }
+    if is_round(solid)
+        && let Ok(done) = attempt(Measure { curved: true, ..whole })
+    {
+        return Ok(done);
+    }
+    attempt(whole)
+}
+
+/// Whether facets of a solid stand for spheres or cylinders.
+fn is_round(solid: &Polyhedron) -> bool {
+    let round = |s: &Surface| matches!(s, Surface::Sphere { .. } | Surface::Cylinder { .. });
+    solid.mesh().origins().iter().any(|o| round(&o.surface))
 }
 
 /// A solid with its faces moved outwards by a distance (mm) and prolonged until they meet: convex edges stay
@@ -155,7 +176,7 @@ fn extended(solid: &Polyhedron, by: f64, tolerance: Tolerance) -> Result<Polyhed
 fn measure(by: f64, tolerance: Tolerance) -> Measure {
     let (radius, allowed) = (by.abs(), tolerance.mm());
     let (chord, joint) = (CHORDS * allowed / radius, JOINTS * allowed / radius);
-    Measure { radius, round: true, chord, joint }
+    Measure { radius, round: true, curved: false, crowd: surface::CROWD, chord, joint }
 }
 
 /// The surface at a distance from a solid, which may cross itself.
@@ -187,7 +208,9 @@ fn raw_surface(
 /// Frees a surface of its crossings.
 fn uncrossed(raw: Raw) -> Result<Polyhedron, OffsetError> {
     let crosses = raw.folded || crossing(&raw.mesh).is_some();
-    let surface = Polyhedron::new(raw.mesh).expect("figures close along their common edges");
+    // Where points fell together the surface may be pinched.
+    let pinched = |_| OffsetError::Crowded { limit: surface::CROWD };
+    let surface = Polyhedron::new(raw.mesh).map_err(pinched)?;
     Ok(if crosses { boolean::self_union(&surface)?.solid } else { surface })
 }
 
