@@ -29,6 +29,9 @@ pub fn warnings(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Vec<Dia
 /// `None` where it is empty by the modeller's word.
 fn empty_cut(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Option<Diagnostic> {
     let cut = first_cut(graph, id)?;
+    if let Node::Offset { child, .. } | Node::Fillet { child, .. } = graph.node(cut) {
+        return empty_core(realizer, graph, cut, *child);
+    }
     let list = operands(graph.node(cut))?;
     let (first, rest) = list.split_first()?;
     let around = |ids: &[ShapeId]| {
@@ -39,6 +42,24 @@ fn empty_cut(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Option<Dia
         .label(graph.origin(cut), "nothing is left of this")
         .note(format!("the first operand lies in {}", around(&[*first])))
         .note(format!("the others lie in {}", around(rest)));
+    Some(diagnostic)
+}
+
+/// The warning for a shape of which shrinking or rounding leaves nothing, with the box of what it was.
+fn empty_core(
+    realizer: &Realizer,
+    graph: &ShapeGraph,
+    id: ShapeId,
+    child: ShapeId,
+) -> Option<Diagnostic> {
+    let before = reach(realizer, graph, child).ok().flatten()?;
+    let words = match graph.node(id) {
+        Node::Offset { .. } => "part is empty after shrinking",
+        _ => "part is empty after rounding",
+    };
+    let diagnostic = Diagnostic::warning(Code::EmptyResult, words)
+        .label(graph.origin(id), "nothing is left of this")
+        .note(format!("the solid lies in {}", self::words(before)));
     Some(diagnostic)
 }
 
@@ -77,7 +98,7 @@ fn too_far(graph: &ShapeGraph, id: ShapeId, DVec3 { x, y, z }: DVec3) -> Diagnos
         .help("move the model to the origin, or make it larger")
 }
 
-/// The outermost difference or intersection of a shape.
+/// The outermost operation of a shape that takes something away.
 fn first_cut(graph: &ShapeGraph, id: ShapeId) -> Option<ShapeId> {
     let mut open = vec![id];
     let mut seen = rustc_hash::FxHashSet::default();
@@ -86,7 +107,10 @@ fn first_cut(graph: &ShapeGraph, id: ShapeId) -> Option<ShapeId> {
             continue;
         }
         match graph.node(id) {
-            Node::Difference(_) | Node::Intersection(_) => return Some(id),
+            Node::Difference(_)
+            | Node::Intersection(_)
+            | Node::Offset { .. }
+            | Node::Fillet { .. } => return Some(id),
             Node::Union(list) => open.extend(list.iter().rev()),
             node => open.extend(super::structure::wrapped(node)),
         }

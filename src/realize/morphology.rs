@@ -14,7 +14,7 @@ impl Coded for OffsetError {
     fn code(&self) -> Code {
         match self {
             OffsetError::NotFinite(_) => Code::Degenerate,
-            OffsetError::TooFine { .. } => Code::Limit,
+            OffsetError::TooFine { .. } | OffsetError::Crowded { .. } => Code::Limit,
             OffsetError::Boolean(error) => error.code(),
             OffsetError::Inexact { .. } => Code::Snap,
         }
@@ -25,7 +25,7 @@ impl Coded for OffsetError {
             OffsetError::TooFine { fitting, .. } => {
                 Some(format!("give a tolerance of {fitting:.3e}mm or more"))
             }
-            OffsetError::Inexact { .. } => {
+            OffsetError::Crowded { .. } | OffsetError::Inexact { .. } => {
                 Some("give a larger tolerance, or another radius".to_string())
             }
             _ => None,

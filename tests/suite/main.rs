@@ -6,6 +6,7 @@ mod drawing;
 mod errors;
 mod eval;
 mod examples;
+mod fields;
 mod floors;
 mod formats;
 mod golden;

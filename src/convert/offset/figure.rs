@@ -18,6 +18,12 @@ use super::{
 pub(super) struct Measure {
     /// How far faces move, mm.
     pub radius: f64,
+    /// Whether convex edges become round; otherwise faces are prolonged until they meet.
+    pub round: bool,
+    /// Whether facets of spheres and cylinders move as these do.
+    pub curved: bool,
+    /// Points that may be opened.
+    pub crowd: usize,
     /// What a chord may be off its arc, in radii.
     pub chord: f64,
     /// What a mitre may be off its planes, and an arc off its edge, in radii.
@@ -66,7 +72,8 @@ impl Surroundings {
             (0..n).map(|i| rings.bend(fan[i], fan[(i + 1) % n], edges[i])).collect();
         let parts = |i: usize| {
             let half = normals[i].angle(normals[(i + 1) % n]) / 2.0;
-            bends[i] == Bend::Convex && 1.0 / libm::cos(half) - 1.0 > measure.joint
+            let round = measure.round && bends[i] == Bend::Convex;
+            round && 1.0 / libm::cos(half) - 1.0 > measure.joint
         };
         let sharp = (0..n).map(parts).collect();
         Surroundings { normals, edges, sharp, bends }
@@ -280,7 +287,7 @@ fn joint(normals: &[DVec3], measure: Measure) -> Option<DVec3> {
 }
 
 /// The angle whose chord is off its arc by a part of the radius.
-fn span(chord: f64) -> f64 {
+pub(super) fn span(chord: f64) -> f64 {
     4.0 * libm::asin((chord.min(1.0) / 2.0).sqrt())
 }
 

@@ -4,11 +4,15 @@
 //! by the convex radius.
 //!
 //! # Departures
+//! The first step leaves convex edges sharp: they are sharp again after the second. It differs from balls
+//! only where a concave edge ends in a convex one, or lies within the radius of one: there the ball would
+//! roll over the edge and dip into the fillet, here the fillet ends flush with the face.
+//!
 //! Sets are closed: a core that has shrunk to a face, a line or a point still carries its ball. As a mesh it
 //! would be nothing, so where something would be lost the middle step is shorter by a trifle, and the last one
 //! too.
 
-use super::{OffsetError, offset};
+use super::{OffsetError, extended, offset};
 use crate::{
     geom::Tolerance,
     kernel::{
@@ -40,7 +44,7 @@ pub fn fillet(
     concave: f64,
     tolerance: Tolerance,
 ) -> Result<Polyhedron, OffsetError> {
-    let closed = offset(solid, concave, tolerance)?;
+    let closed = extended(solid, concave, tolerance)?;
     let core = offset(&closed, -(convex + concave), tolerance)?;
     let Some([low, high]) = measure::bounds(&closed).filter(|_| convex > 0.0) else {
         return Ok(core);

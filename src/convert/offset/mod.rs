@@ -23,13 +23,17 @@ use std::sync::Arc;
 use glam::{DMat3, DVec3};
 use thiserror::Error;
 
-use self::{figure::Measure, proof::missing};
+use self::{
+    figure::Measure,
+    proof::missing,
+    surface::{Raw, TooMany},
+};
 pub use self::{
     fillet::fillet,
     proof::{Deviation, deviation},
 };
 use crate::{
-    geom::{Placement, PolyMesh, Tolerance, sides},
+    geom::{Placement, Surface, Tolerance, sides},
     kernel::{
         brep::{
             Polyhedron,
@@ -49,15 +53,23 @@ pub enum OffsetError {
     NotFinite(f64),
     /// The surface needs too many triangles.
     #[error(
-        "an offset this fine needs {found} corners; the limit is {limit}, which a tolerance of {fitting:.3e} mm meets"
+        "an offset this fine needs about {found:.0} corners; the limit is {limit}, which a tolerance of {fitting:.3e} mm meets"
     )]
     TooFine {
-        /// Corners needed.
-        found: usize,
+        /// Corners needed, about.
+        found: f64,
         /// Corners allowed.
         limit: usize,
         /// A tolerance that fits, mm.
         fitting: f64,
+    },
+    /// Too many parts of the surface lie over each other.
+    #[error(
+        "the offset turns more than {limit} points of the solid over, whose pieces lie over each other"
+    )]
+    Crowded {
+        /// Points allowed.
+        limit: usize,
     },
     /// The set operation that frees the surface of its crossings failed.
     #[error(transparent)]
@@ -105,37 +117,111 @@ pub fn offset(
     if by == 0.0 || solid.is_empty() {
         return Ok(solid.clone());
     }
-    let radius = by.abs();
-    let measure = Measure {
-        radius,
-        chord: CHORDS * tolerance.mm() / radius,
-        joint: JOINTS * tolerance.mm() / radius,
-    };
-    let raw = match by > 0.0 {
-        true => surface::raw(solid.mesh(), measure),
-        false => {
-            let mut inverse = solid.mesh().clone();
-            inverse.flip();
-            let mut raw = surface::raw(&inverse, measure);
-            raw.mesh.flip();
-            raw
+    // Errors of chords and joints may add up: then once more, finer.
+    let mut finer = tolerance;
+    for _ in 1..TRIES {
+        match offset_once(solid, by, finer, tolerance) {
+            Err(OffsetError::Inexact { .. }) => finer = finer.half(),
+            done => return done,
         }
-    };
-    resolved(solid, raw.mesh, raw.folded, by, tolerance)
+    }
+    offset_once(solid, by, finer, tolerance)
 }
 
-/// Frees the surface of its crossings and looks whether it is where it should be.
-fn resolved(
+/// How often an offset is made, each time with half of the tolerance.
+const TRIES: usize = 3;
+
+/// An offset made with one tolerance and held against another.
+fn offset_once(
     solid: &Polyhedron,
-    mesh: PolyMesh,
-    folded: bool,
+    by: f64,
+    made: Tolerance,
+    allowed: Tolerance,
+) -> Result<Polyhedron, OffsetError> {
+    let whole = measure(by, made);
+    let attempt = |measure: Measure| {
+        let grown = uncrossed(raw_surface(solid, by, measure, made)?)?;
+        proved(solid, grown, by, allowed)
+    };
+    // Nothing is turned over, mostly. What shrinks onto the centres of its own spheres and cylinders falls
+    // together as these do; only then is the surface made of pieces that lie over each other.
+    match attempt(Measure { crowd: 0, ..whole }) {
+        Err(OffsetError::Crowded { .. }) => {}
+        done => return done,
+    }
+    if is_round(solid)
+        && let Ok(done) = attempt(Measure { curved: true, ..whole })
+    {
+        return Ok(done);
+    }
+    attempt(whole)
+}
+
+/// Whether facets of a solid stand for spheres or cylinders.
+fn is_round(solid: &Polyhedron) -> bool {
+    let round = |s: &Surface| matches!(s, Surface::Sphere { .. } | Surface::Cylinder { .. });
+    solid.mesh().origins().iter().any(|o| round(&o.surface))
+}
+
+/// A solid with its faces moved outwards by a distance (mm) and prolonged until they meet: convex edges stay
+/// sharp, unless they have to be round next to what is not simple.
+fn extended(solid: &Polyhedron, by: f64, tolerance: Tolerance) -> Result<Polyhedron, OffsetError> {
+    if by == 0.0 || solid.is_empty() {
+        return Ok(solid.clone());
+    }
+    let measure = Measure { round: false, ..measure(by, tolerance) };
+    uncrossed(raw_surface(solid, by, measure, tolerance)?)
+}
+
+fn measure(by: f64, tolerance: Tolerance) -> Measure {
+    let (radius, allowed) = (by.abs(), tolerance.mm());
+    let (chord, joint) = (CHORDS * allowed / radius, JOINTS * allowed / radius);
+    Measure { radius, round: true, curved: false, crowd: surface::CROWD, chord, joint }
+}
+
+/// The surface at a distance from a solid, which may cross itself.
+fn raw_surface(
+    solid: &Polyhedron,
+    by: f64,
+    measure: Measure,
+    tolerance: Tolerance,
+) -> Result<Raw, OffsetError> {
+    let refused = |many: TooMany| match many {
+        TooMany::Turned => OffsetError::Crowded { limit: surface::CROWD },
+        TooMany::Corners(found) => OffsetError::TooFine {
+            found,
+            limit: surface::CORNERS,
+            // Caps have as many points as their area over the square of a chord.
+            fitting: tolerance.mm() * found / surface::CORNERS as f64,
+        },
+    };
+    if by > 0.0 {
+        return surface::raw(solid.mesh(), measure).map_err(refused);
+    }
+    let mut inverse = solid.mesh().clone();
+    inverse.flip();
+    let mut raw = surface::raw(&inverse, measure).map_err(refused)?;
+    raw.mesh.flip();
+    Ok(raw)
+}
+
+/// Frees a surface of its crossings.
+fn uncrossed(raw: Raw) -> Result<Polyhedron, OffsetError> {
+    let crosses = raw.folded || crossing(&raw.mesh).is_some();
+    // Where points fell together the surface may be pinched.
+    let pinched = |_| OffsetError::Crowded { limit: surface::CROWD };
+    let surface = Polyhedron::new(raw.mesh).map_err(pinched)?;
+    Ok(if crosses { boolean::self_union(&surface)?.solid } else { surface })
+}
+
+/// Looks whether an offset is where it should be, and adds what no cap covers.
+fn proved(
+    solid: &Polyhedron,
+    mut grown: Polyhedron,
     by: f64,
     tolerance: Tolerance,
 ) -> Result<Polyhedron, OffsetError> {
     let field = Polyhedral::new(solid.mesh()).expect("a solid that is not empty has a face");
-    let crosses = folded || crossing(&mesh).is_some();
-    let surface = Polyhedron::new(mesh).expect("figures close along their common edges");
-    let mut grown = if crosses { boolean::self_union(&surface)?.solid } else { surface };
     for _ in 0..ROUNDS {
         let Some(found) = deviation(grown.mesh(), &field, by) else { return Ok(grown) };
         if found.most <= tolerance.mm() {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
-use crate::geom::PolyMesh;
+use crate::geom::{PolyMesh, Surface};
 
 /// Directions closer than this, as a sine, are one: faces of one plane differ by rounding alone.
 const SAME: f64 = 1e-10;
@@ -29,11 +29,31 @@ pub(super) enum Bend {
     Concave,
 }
 
+/// A facet leans away from the surface that it stands for by less than this cosine, or does not stand for it.
+const STANDS: f64 = 0.7;
+
+/// The normal of a surface at a point of a facet of it.
+fn normal_of(surface: Surface, p: DVec3, facet: DVec3) -> DVec3 {
+    let out = match surface {
+        Surface::Sphere { center, .. } => p - center,
+        Surface::Cylinder { point, axis, .. } => (p - point).reject_from_normalized(axis),
+        _ => return facet,
+    };
+    let normal = out.normalize_or_zero();
+    match normal.dot(facet) {
+        lean if lean > STANDS => normal,
+        lean if lean < -STANDS => -normal,
+        _ => facet,
+    }
+}
+
 /// The corners of a closed mesh, by number in the order of its loops.
 pub(super) struct Rings {
     pub corners: Vec<Corner>,
     /// Unit normals of the faces.
     pub normals: Vec<DVec3>,
+    /// Unit normals of the surface at the corners.
+    at: Vec<DVec3>,
     /// Corners around each point, counter-clockwise from outside; between a corner and the next runs the
     /// edge to the point before the former.
     pub around: Vec<Vec<u32>>,
@@ -42,8 +62,9 @@ pub(super) struct Rings {
 }
 
 impl Rings {
-    /// The corners of a mesh that is closed by index.
-    pub fn of(mesh: &PolyMesh) -> Rings {
+    /// The corners of a mesh that is closed by index. Normals at corners are those of the faces, or where
+    /// `curved` those of the spheres and cylinders that the faces stand for.
+    pub fn of(mesh: &PolyMesh, curved: bool) -> Rings {
         let mut corners = vec![];
         for face in mesh.faces() {
             for ring in face.loops() {
@@ -56,9 +77,20 @@ impl Rings {
                 }));
             }
         }
-        let normals = mesh.faces().map(|f| f.area_vector().normalize_or_zero()).collect();
+        let normals: Vec<DVec3> =
+            mesh.faces().map(|f| f.area_vector().normalize_or_zero()).collect();
+        let at = corners.iter().map(|corner: &Corner| {
+            let facet = normals[corner.face as usize];
+            let surface = mesh.face(corner.face as usize).origin().surface;
+            if curved {
+                normal_of(surface, mesh.points[corner.point as usize], facet)
+            } else {
+                facet
+            }
+        });
+        let at = at.collect();
         let ends = corners.iter().zip(0..).map(|(c, i)| ((c.before, c.point), i)).collect();
-        let mut rings = Rings { corners, normals, around: vec![], ends };
+        let mut rings = Rings { corners, normals, at, around: vec![], ends };
         rings.around = rings.fans(mesh.points.len());
         rings
     }
@@ -86,9 +118,9 @@ impl Rings {
         self.ends[&(from, to)]
     }
 
-    /// The normal of a corner's face.
+    /// The normal at a corner.
     pub fn normal(&self, corner: u32) -> DVec3 {
-        self.normals[self.corners[corner as usize].face as usize]
+        self.at[corner as usize]
     }
 
     /// How the faces of a corner and of the next around a point meet, the edge between them running along

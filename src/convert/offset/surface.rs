@@ -1,18 +1,36 @@
 //! The offset surface before it is freed of its crossings: faces moved, edges bridged, points capped.
 
-use std::sync::Arc;
+use std::{f64::consts::TAU, sync::Arc};
 
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
 use super::{
-    figure::{Figure, Measure, Surroundings},
-    rings::Rings,
+    figure::{Figure, Measure, Surroundings, span},
+    rings::{Corner, Rings},
 };
 use crate::geom::{Origin, PolyMesh, Surface, triangulate::triangulate_face};
 
 /// Points of a face that are farther than this from its plane, relative to the coordinates, are not of it.
 const FLAT: f64 = 1e-12;
+
+/// Open points that are worked with: their pieces may all overlap, which takes time that grows with the square
+/// of their number.
+pub(super) const CROWD: usize = 300;
+
+/// Points of one surface: about a gigabyte while it is made.
+pub(super) const CORNERS: usize = 4_000_000;
+
+/// Chords of a full turn; a cap has about a tenth of their square.
+const CHORDS: f64 = 4000.0;
+
+/// What there would be too many of.
+pub(super) enum TooMany {
+    /// Points of the surface, and about how many it would have.
+    Corners(f64),
+    /// Points to be opened.
+    Turned,
+}
 
 /// The surface and what is known of it.
 pub(super) struct Raw {
@@ -26,12 +44,15 @@ pub(super) struct Raw {
 /// It is the boundary of pieces that are added up: the solid, what each face sweeps over, and what lies around
 /// convex edges and points. All of them count once, so that the surface winds around what is in any of them.
 /// Where a face or a strip would be turned over, and count against the others, its points are opened.
-pub(super) fn raw(mesh: &PolyMesh, measure: Measure) -> Raw {
-    let rings = Rings::of(mesh);
+///
+/// Refused are more than [`CORNERS`] points, and more than the crowd that may be opened.
+pub(super) fn raw(mesh: &PolyMesh, measure: Measure) -> Result<Raw, TooMany> {
+    let rings = Rings::of(mesh, measure.curved);
     let mut open = vec![false; mesh.points.len()];
     loop {
         let mut builder = Builder::new(mesh, &rings, measure, &open);
-        builder.points();
+        builder.points()?;
+        builder.weld();
         builder.faces();
         builder.edges();
         let Builder { mut out, folded, turned, .. } = builder;
@@ -39,9 +60,28 @@ pub(super) fn raw(mesh: &PolyMesh, measure: Measure) -> Raw {
         turned.iter().for_each(|&point| open[point as usize] = true);
         if open == before {
             out.drop_unused_points();
-            return Raw { mesh: out, folded };
+            return Ok(Raw { mesh: out, folded });
+        }
+        if open.iter().filter(|open| **open).count() > measure.crowd {
+            return Err(TooMany::Turned);
         }
     }
+}
+
+/// Points closer than this, relative to the radius and their coordinates, are one where they should be.
+const TOGETHER: f64 = 1e-9;
+
+/// Whether corners of a triangle are the same.
+fn is_point([a, b, c]: &[u32; 3]) -> bool {
+    a == b || b == c || c == a
+}
+
+/// The first of the points that a point fell together with.
+fn first_of(welded: &[u32], mut i: u32) -> u32 {
+    while welded[i as usize] != i {
+        i = welded[i as usize];
+    }
+    i
 }
 
 struct Builder<'a> {
@@ -58,6 +98,10 @@ struct Builder<'a> {
     open: &'a [bool],
     turned: Vec<u32>,
     folded: bool,
+    /// Triangles of caps and their origins.
+    caps: Vec<([u32; 3], u32)>,
+    /// For each point made the first one that it fell together with.
+    welded: Vec<u32>,
 }
 
 /// What an origin of the offset stands for.
@@ -89,11 +133,18 @@ impl<'a> Builder<'a> {
             open,
             turned: vec![],
             folded: false,
+            caps: vec![],
+            welded: vec![],
         }
     }
 
-    fn points(&mut self) {
-        for point in 0..self.mesh.points.len() as u32 {
+    fn points(&mut self) -> Result<(), TooMany> {
+        let turn = TAU / span(self.measure.chord);
+        if turn > CHORDS {
+            return Err(TooMany::Corners(CORNERS as f64 * (turn / CHORDS).powi(2)));
+        }
+        let all = self.mesh.points.len();
+        for point in 0..all as u32 {
             let fan = &self.rings.around[point as usize];
             if fan.is_empty() {
                 continue;
@@ -101,7 +152,45 @@ impl<'a> Builder<'a> {
             let around = Surroundings::of(self.rings, &self.mesh.points, point, self.measure);
             let figure = around.figure(self.measure, self.open[point as usize]);
             self.place(point, &figure);
+            let made = self.out.points.len();
+            if made > CORNERS {
+                return Err(TooMany::Corners(made as f64 * all as f64 / f64::from(point + 1)));
+            }
         }
+        Ok(())
+    }
+
+    /// Makes points one that the ends of an edge have become, where the surface moves onto its own centres.
+    fn weld(&mut self) {
+        let mut welded: Vec<u32> = (0..self.out.points.len() as u32).collect();
+        if self.measure.curved {
+            self.join_ends(&mut welded);
+        }
+        let lists = self.corners.iter_mut().chain(&mut self.chains);
+        lists.flatten().for_each(|i| *i = welded[*i as usize]);
+        self.welded = welded;
+    }
+
+    fn join_ends(&self, welded: &mut [u32]) {
+        for fan in &self.rings.around {
+            for &corner in fan {
+                let Corner { point, before, .. } = self.rings.corners[corner as usize];
+                let far = &self.chains[self.rings.end(point, before) as usize];
+                let near = self.chains[corner as usize].iter().rev();
+                for (&a, &b) in near.zip(far).filter(|&(&a, &b)| self.falls_together(a, b)) {
+                    let (a, b) = (first_of(welded, a), first_of(welded, b));
+                    welded[a.max(b) as usize] = a.min(b);
+                }
+            }
+        }
+        for i in 0..welded.len() as u32 {
+            welded[i as usize] = first_of(welded, i);
+        }
+    }
+
+    fn falls_together(&self, a: u32, b: u32) -> bool {
+        let [p, q] = [a, b].map(|i| self.out.points[i as usize]);
+        p.distance(q) <= TOGETHER * (self.measure.radius + p.abs().max_element())
     }
 
     /// Puts the figure of a point in its place.
@@ -123,11 +212,14 @@ impl<'a> Builder<'a> {
         let surface = if figure.open { Surface::Facets } else { round };
         let origin = self.origin(Source::Point(point), surface, &faces);
         for triangle in &figure.cap {
-            self.push(&triangle.map(|i| i + first), origin);
+            self.caps.push((triangle.map(|i| i + first), origin));
         }
     }
 
     fn faces(&mut self) {
+        for (triangle, origin) in std::mem::take(&mut self.caps) {
+            self.push(&triangle.map(|i| self.welded[i as usize]), origin);
+        }
         let mut corner = 0;
         for face in self.mesh.faces() {
             let index = face.index() as u32;
@@ -161,11 +253,12 @@ impl<'a> Builder<'a> {
             let [a, b, c] = t.map(|i| points[i as usize]);
             (b - a).cross(c - a).dot(normal)
         };
-        let upright = moved.iter().all(|t| area(t) > 0.0);
-        let outline: Vec<Vec<u32>> = loops
-            .iter()
-            .map(|l| l.iter().flat_map(|&c| self.corners[c as usize].iter().copied()).collect())
-            .collect();
+        let upright = moved.iter().all(|t| is_point(t) || area(t) > 0.0);
+        let outline: Vec<Vec<u32>> =
+            loops.iter().map(|l| self.outline(l)).filter(|l| l.len() > 2).collect();
+        if outline.is_empty() {
+            return;
+        }
         let base = points[outline[0][0] as usize];
         let reach = base.abs().max_element() + self.measure.radius;
         let off = |&i: &u32| (points[i as usize] - base).dot(normal).abs();
@@ -184,6 +277,17 @@ impl<'a> Builder<'a> {
 
     fn point_of(&self, corner: u32) -> u32 {
         self.rings.corners[corner as usize].point
+    }
+
+    /// The points that the corners of a loop become, each once where they fell together.
+    fn outline(&self, corners: &[u32]) -> Vec<u32> {
+        let points = corners.iter().flat_map(|&c| self.corners[c as usize].iter().copied());
+        let mut points: Vec<u32> = points.collect();
+        points.dedup();
+        while points.len() > 1 && points.first() == points.last() {
+            points.pop();
+        }
+        points
     }
 
     /// Triangles where a corner became several points.
@@ -252,7 +356,7 @@ impl<'a> Builder<'a> {
         let (mut i, mut j, mut along) = (0, 0, true);
         loop {
             let [from, to] = [near[i], far[j]].map(|p| self.out.points[p as usize]);
-            along &= (to - from).dot(axis) > 0.0;
+            along &= near[i] == far[j] || (to - from).dot(axis) > 0.0;
             // Steps of both chains go side by side.
             let (next_near, next_far) = ((i + 1) * m, (j + 1) * n);
             if i == n && j == m {
@@ -273,6 +377,11 @@ impl<'a> Builder<'a> {
 
     /// A quadrilateral, as one face if it is flat.
     fn quad(&mut self, corners: [u32; 4], origin: u32) {
+        if (0..4).any(|k| corners[k] == corners[(k + 1) % 4]) {
+            let [a, b, c, d] = corners;
+            self.push(&[a, b, c], origin);
+            return self.push(&[a, c, d], origin);
+        }
         let [a, b, c, d] = corners.map(|i| self.out.points[i as usize]);
         let normal = (c - a).cross(d - b);
         let reach = [a, b, c, d].iter().fold(1.0f64, |m, p| m.max(p.abs().max_element()));
@@ -288,7 +397,11 @@ impl<'a> Builder<'a> {
         self.push(&[a, c, d], origin);
     }
 
+    /// A triangle, unless corners of it fell together.
     fn push(&mut self, triangle: &[u32; 3], origin: u32) {
+        if is_point(triangle) {
+            return;
+        }
         let plane = self.out.add_plane();
         self.out.push_face(&[*triangle], plane, origin);
     }
