@@ -122,3 +122,19 @@ pub fn misses(solids: &[Arc<Polyhedron>], at: Span) -> Diagnostic {
         warning.note(format!("what is left lies about [{middle}], {size} mm across"))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{kernel::brep::primitive::cone, output::drawing::View};
+
+    #[test]
+    fn a_cut_beside_the_middle_is_as_wide_as_the_true_cylinder() {
+        let plane = CutPlane { at: DVec3::X * 9.9, normal: DVec3::X };
+        let mut solids = [Arc::new(cone(10.0, 10.0, 5.0, 32))];
+        let camera = Camera::view(View::Right);
+        let cuts = cut(&mut solids, &plane, &camera, Tolerance::DEFAULT).expect("a cut");
+        let half = cuts[0].rings.iter().flatten().map(|p| p.x).fold(0.0, f64::max);
+        assert!((half - (100.0f64 - 9.9 * 9.9).sqrt()).abs() < 1e-6, "{half}");
+    }
+}

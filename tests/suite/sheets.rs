@@ -55,6 +55,8 @@ fn views_are_measured() {
     assert!(near(measured("front", "hidden"), 200.0), "{value}");
     assert!(near(measured("iso", "visible"), 390.0 * (2.0f64 / 3.0).sqrt()), "{value}");
     assert!(near(measured("donut", "visible"), 291.784), "{value}");
+    // The rim and one hidden line for each side of a row of holes.
+    assert_eq!(measured("front", "segments"), 4.0 + 20.0);
     assert!(value["views"].get("big").is_none());
 }
 
@@ -74,6 +76,40 @@ fn the_same_files_on_one_thread_and_two() {
     assert!(page.contains("width=\"420mm\"") && page.contains("class=\"frame\""));
     usvg::Tree::from_str(&page, &usvg::Options::default()).expect("an SVG");
     assert!(text("front.dxf").contains("LWPOLYLINE") && text("both-cut.pdf").starts_with("%PDF"));
+}
+
+/// Bytes of all files of an example in a format, made with so many threads.
+fn drawn(example: &str, format: &str, jobs: &str) -> Vec<(String, Vec<u8>)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let out = tempfile::tempdir().expect("a temporary folder");
+    let (file, to) = (format!("examples/{example}"), out.path().to_str().expect("plain"));
+    let output = run(root, &["build", &file, "--format", format, "-o", to, "-j", jobs]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let entries = fs::read_dir(out.path()).expect("readable");
+    let mut files: Vec<_> = entries
+        .map(|entry| entry.expect("readable").path())
+        .map(|path| (path.display().to_string(), fs::read(&path).expect("readable")))
+        .map(|(path, bytes)| (path.rsplit('/').next().unwrap_or_default().to_string(), bytes))
+        .collect();
+    files.sort();
+    files
+}
+
+#[test]
+fn every_drawn_example_is_the_same_on_one_thread_and_two() {
+    let mut count = 0;
+    for example in super::examples::models() {
+        let text = fs::read_to_string(super::examples::folder().join(&example)).expect("readable");
+        if !text.lines().any(|line| line.starts_with("view ") || line.starts_with("sheet ")) {
+            continue;
+        }
+        for format in ["svg", "dxf", "pdf"] {
+            let one = drawn(&example, format, "1");
+            count += usize::from(one.iter().any(|(name, _)| name.ends_with(format)));
+            assert!(one == drawn(&example, format, "2"), "{example} {format}");
+        }
+    }
+    assert!(count >= 9, "{count} drawings");
 }
 
 #[test]

@@ -21,6 +21,9 @@ use crate::{
     session::{self, Given, Session, Tolerance},
 };
 
+/// A model, and what was found in it.
+type Compiled<'s> = (ManuallyDrop<session::Model<'s>>, Vec<Diagnostic>);
+
 /// Files, parameters and watch of one command.
 #[derive(Debug)]
 pub struct Desk {
@@ -77,12 +80,24 @@ impl Desk {
     }
 
     /// The model with the parameters given. It is never dropped either.
-    pub fn compile<'s>(
-        &self,
-        session: &'s Session<'_>,
-    ) -> (ManuallyDrop<session::Model<'s>>, Vec<Diagnostic>) {
+    pub fn compile<'s>(&self, session: &'s Session<'_>) -> Compiled<'s> {
         let (model, diagnostics) = session.compile(&self.entry, &self.given);
         (ManuallyDrop::new(model), diagnostics)
+    }
+
+    /// The same when it has all outputs that are asked for; otherwise all that is to be said.
+    pub fn compile_asked<'s>(
+        &self,
+        session: &'s Session<'_>,
+        names: &[String],
+    ) -> Result<Compiled<'s>, Vec<Diagnostic>> {
+        let (mut model, mut diagnostics) = self.compile(session);
+        let unknown = model.refuse_unknown(names);
+        if unknown.is_empty() {
+            return Ok((model, diagnostics));
+        }
+        diagnostics.extend(unknown);
+        Err(diagnostics)
     }
 
     /// Reports what was found, each thing once, writes the timings if asked to, and says how the command ends.

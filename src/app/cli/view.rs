@@ -27,12 +27,10 @@ pub fn run(arguments: &View, style: Style) -> io::Result<Exit> {
         Err(words) => return fail(style, Exit::Usage, words),
     };
     let session = desk.session();
-    let (mut model, mut diagnostics) = desk.compile(&session);
-    let unknown = model.refuse_unknown(&arguments.part);
-    if !unknown.is_empty() {
-        diagnostics.extend(unknown);
-        return desk.report(&session, &diagnostics);
-    }
+    let (mut model, mut diagnostics) = match desk.compile_asked(&session, &arguments.part) {
+        Ok(compiled) => compiled,
+        Err(diagnostics) => return desk.report(&session, &diagnostics),
+    };
     let sketch = model.sketch(&arguments.part, &sight, (&path, format), &mut diagnostics);
     let mut written = false;
     diagnostics.extend(model.build(sketch.as_slice(), &mut |artifact, bytes| {

@@ -160,8 +160,7 @@ fn merge_line(pieces: &[Piece], group: &[u32], out: &mut Vec<Piece>) {
     let mut before = f64::NEG_INFINITY;
     for (at, ends, i) in events {
         if at > before {
-            let best = active.iter().map(|&k| &pieces[k as usize]).min_by_key(|p| p.mark);
-            run.go_on(before, at, best, out);
+            run.go_on(before, at, run.best_of(active.iter().map(|&k| &pieces[k as usize])), out);
             before = at;
         }
         if ends { active.retain(|&k| k != i) } else { active.push(i) }
@@ -183,6 +182,15 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
+    /// The most important piece; of two that are drawn alike, the one that is being lengthened.
+    fn best_of(&self, active: impl Iterator<Item = &'a Piece> + Clone) -> Option<&'a Piece> {
+        let best = active.clone().min_by_key(|p| p.mark)?;
+        let alike = |mark: Mark| (mark.class, mark.order) == (best.mark.class, best.mark.order);
+        let goes_on = self.best.filter(|p| alike(p.mark));
+        let goes_on = goes_on.and_then(|p| active.into_iter().find(|q| q.mark == p.mark));
+        Some(goes_on.unwrap_or(best))
+    }
+
     /// Lengthens the piece up to a place, or begins another one.
     fn go_on(&mut self, from: f64, to: f64, best: Option<&'a Piece>, out: &mut Vec<Piece>) {
         let same = match (self.best, best) {
@@ -238,6 +246,14 @@ mod tests {
             assert!((length(&out, Class::Centre) - 15.0).abs() < 1e-12);
             assert_eq!(out.len(), 5);
         }
+    }
+
+    #[test]
+    fn what_is_drawn_alike_stays_whole() {
+        let mut all = [0.0, 4.0].map(|x| piece([x, 0.0], [10.0 - x, 0.0], Class::Visible));
+        all[0].mark.kind = Kind::Contour;
+        let out = merged(&all, 1e-9);
+        assert_eq!((out.len(), length(&out, Class::Visible)), (1, 10.0));
     }
 
     #[test]

@@ -119,27 +119,3 @@ impl Border<'_> {
 
 /// Corners are moved by so many bounds at most.
 pub const FARTHEST: f64 = 32.0;
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::kernel::brep::{
-        boolean::{Tree, evaluate},
-        primitive::{cone, cuboid},
-    };
-
-    #[test]
-    fn a_cut_beside_the_middle_is_as_wide_as_the_true_cylinder() {
-        let leaf = |solid| Tree::Leaf(std::sync::Arc::new(solid));
-        let block = cuboid(DVec3::new(9.9, -20.0, -1.0), DVec3::new(20.0, 20.0, 6.0));
-        let cut = Tree::Difference(vec![leaf(cone(10.0, 10.0, 5.0, 32)), leaf(block)]);
-        let solid = evaluate(&cut).expect("a solid").solid;
-        let cut = true_outlines(
-            solid.mesh(),
-            |f| f.area_vector().normalize().x > 0.999,
-            Tolerance::DEFAULT,
-        );
-        let half = cut.iter().flatten().flatten().map(|p| p.y).fold(0.0, f64::max);
-        assert!((half - (100.0f64 - 9.9 * 9.9).sqrt()).abs() < 1e-6, "{half}");
-    }
-}

@@ -320,8 +320,17 @@ impl File {
     fn ink(&mut self, ink: &Ink) {
         match &ink.mark {
             Mark::Line(path) => self.path(path, ink.layer),
-            Mark::Area(rings) => rings.iter().for_each(|ring| self.polyline(ring, true, ink.layer)),
+            Mark::Area(rings) => rings.iter().for_each(|ring| self.area(ring, ink.layer)),
             Mark::Text(letters) => self.letters(letters, ink.layer),
+        }
+    }
+
+    /// A filled triangle, such as the head of an arrow; other areas by their outline.
+    fn area(&mut self, ring: &[DVec2], layer: Layer) {
+        let &[a, b, c] = ring else { return self.polyline(ring, true, layer) };
+        self.entity("SOLID", layer, "AcDbTrace");
+        for (code, p) in [(10, a), (11, b), (12, c), (13, c)] {
+            self.point(code, p);
         }
     }
 
@@ -440,17 +449,20 @@ fn line_weight(width: f64) -> u32 {
     WEIGHTS.into_iter().min_by(nearer).unwrap_or(25)
 }
 
-/// Text on one line; what is not ASCII as `\U+XXXX`, which readers of all code pages know.
+/// Text on one line: diameter, degrees and plus or minus by their own codes, what else is not ASCII as `\U+XXXX`, which
+/// readers of all code pages know.
 fn plain(text: &str) -> String {
     let mut plain = String::new();
     for c in text.chars().filter(|c| !c.is_control()) {
-        let code = c as u32;
-        if c.is_ascii() {
-            plain.push(c);
-        } else if code <= 0xFFFF {
-            let _ = write!(plain, "\\U+{code:04X}");
-        } else {
-            plain.push('?');
+        match c {
+            '\u{d8}' | '\u{2300}' => plain.push_str("%%c"),
+            '\u{b0}' => plain.push_str("%%d"),
+            '\u{b1}' => plain.push_str("%%p"),
+            ' '..='~' => plain.push(c),
+            '\0'..='\u{ffff}' => {
+                let _ = write!(plain, "\\U+{:04X}", c as u32);
+            }
+            _ => plain.push('?'),
         }
     }
     plain
@@ -483,6 +495,7 @@ mod tests {
     #[test]
     fn pens_have_weights() {
         assert_eq!([0.5, 0.25, 0.7, 0.34, 9.0].map(line_weight), [50, 25, 70, 35, 211]);
-        assert_eq!(plain("Ø 5\n"), "\\U+00D8 5");
+        assert_eq!(plain("Ø 5 ± 1°\n"), "%%c 5 %%p 1%%d");
+        assert_eq!(plain("é"), "\\U+00E9");
     }
 }

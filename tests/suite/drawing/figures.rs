@@ -124,6 +124,22 @@ fn a_camera_among_the_solids_sees_what_is_before_it() {
 }
 
 #[test]
+fn an_eye_on_a_face_sees_what_is_before_it() {
+    let cube = |x: f64| cuboid(DVec3::new(x, -1.0, -1.0), DVec3::new(x + 2.0, 1.0, 1.0));
+    let eye = Camera::perspective(DVec3::new(0.0, 0.2, 0.1), DVec3::X * 9.0).expect("apart");
+    let before = drawn(&[cube(8.0)], &eye, Method::Auto);
+    for method in METHODS {
+        // The eye is on the face of the box behind it, and on that of the box around the way.
+        for near_box in [cube(-2.0), cube(0.0)] {
+            let found = drawn(&[near_box, cube(8.0)], &eye, method);
+            let seen = found.lines.iter().filter(|l| l.id == 1 && l.order == 0);
+            let seen: f64 = seen.map(|l| l.path.length()).sum();
+            assert!(near(seen, before.visible, 1e-9), "{method:?}: {seen} {}", before.visible);
+        }
+    }
+}
+
+#[test]
 fn lines_end_at_the_window() {
     let camera = Camera::view(View::Front);
     let half = Window { min: dvec2(-100.0, -100.0), max: dvec2(0.0, 100.0) };
