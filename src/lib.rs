@@ -62,7 +62,8 @@
 //! | [`shape`] | the graph of construction steps |
 //! | [`eval`] | names, values, dimensions, calls; binds `stdlib/` to the graph |
 //! | [`input`] | readers of meshes, drawings and values |
-//! | [`kernel`] | exact polyhedra ([`kernel::brep`]) and plane figures ([`kernel::profile`]) |
+//! | [`kernel`] | exact polyhedra ([`kernel::brep`]), plane figures ([`kernel::profile`]) and distance fields ([`kernel::field`]) |
+//! | [`convert`] | offsets and fillets of polyhedra, held against their distance fields |
 //! | [`realize`] | graph to solids |
 //! | [`output`] | writers of mesh files and OpenSCAD source, drawings ([`output::drawing`]) and the sheets they stand on ([`output::sheet`]) |
 //! | [`session`] | the one road through it all |
@@ -73,6 +74,7 @@
 //! | paper | where |
 //! |---|---|
 //! | S. Nagashima, *A spatial inclusion test for polyhedra using a spherical projection*, 1986 | [`geom::spherical_projection`], and the seeds of [`kernel::brep::boolean`] |
+//! | S. Tatehara, N. Tanaka, S. Tatsumi, K. Tokumasu, *Object-oriented expression for complex 3-D shapes* | [`kernel::field`], [`convert::offset`] |
 //! | T. Nishita, hidden lines and half-tones of three-dimensional scenes, 1972 (METHODS, section 3) | [`output::drawing`] |
 
 pub mod app;

@@ -166,6 +166,8 @@ impl<'a> Builder<'a> {
         if self.measure.curved {
             self.join_ends(&mut welded);
         }
+        // What fell together may have left a sheet without volume.
+        self.folded |= welded.iter().zip(0..).any(|(first, i)| *first != i);
         let lists = self.corners.iter_mut().chain(&mut self.chains);
         lists.flatten().for_each(|i| *i = welded[*i as usize]);
         self.welded = welded;
