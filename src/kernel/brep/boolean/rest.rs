@@ -112,26 +112,33 @@ fn touching(operands: &[Facets]) -> Vec<[(u32, u32); 2]> {
     let around: Vec<Bounds> = operands.iter().map(Facets::bounds).collect();
     let mut owners = vec![];
     Hierarchy::new(around.iter().copied()).own_pairs(|a, b| owners.push((a, b)));
+    let is_large = operands.iter().map(|o| o.list().len()).sum::<usize>() > LARGE;
     let touching = |&(a, b): &(u32, u32)| {
-        let (mut near_a, mut near_b) = rayon::join(
-            || near(&operands[a as usize], &around[b as usize]),
-            || near(&operands[b as usize], &around[a as usize]),
-        );
+        let mut near_a = near(&operands[a as usize], &around[b as usize]);
+        let mut near_b = near(&operands[b as usize], &around[a as usize]);
         if near_a.len().min(near_b.len()) > FEW {
             thin_out(&mut near_a, &near_b, around[b as usize]);
             thin_out(&mut near_b, &near_a, around[a as usize]);
         }
         let tree = |near: &[(Bounds, u32)]| Hierarchy::new(near.iter().map(|n| n.0));
-        let (tree_a, tree_b) = rayon::join(|| tree(&near_a), || tree(&near_b));
+        let (tree_a, tree_b) = match is_large {
+            true => rayon::join(|| tree(&near_a), || tree(&near_b)),
+            false => (tree(&near_a), tree(&near_b)),
+        };
         let mut found = vec![];
         tree_a.pairs(&tree_b, |f, g| {
             found.push([(a, near_a[f as usize].1), (b, near_b[g as usize].1)]);
         });
         found
     };
-    let found: Vec<_> = owners.par_iter().map(touching).collect();
-    found.concat()
+    if !is_large {
+        return owners.iter().flat_map(touching).collect();
+    }
+    owners.par_iter().map(touching).collect::<Vec<_>>().concat()
 }
+
+/// So many facets of all operands are worth a second thread.
+const LARGE: usize = 1500;
 
 /// So few facets are not worth a grid.
 const FEW: usize = 48;
