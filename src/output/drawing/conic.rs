@@ -1,9 +1,14 @@
 //! The ellipse through points, if there is one.
 
+use std::f64::consts::{FRAC_PI_2, TAU};
+
 use glam::{DMat2, DVec2, dvec2};
 
 /// The unknowns of a conic with one coefficient fixed by its size.
 const UNKNOWNS: usize = 6;
+
+/// An ellipse is told by points that reach over this part of it or more: of less, its size is rounding.
+const LARGEST: f64 = 100.0;
 
 /// An ellipse: center + cos(t) major + sin(t) minor.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -18,7 +23,8 @@ pub struct Ellipse {
 
 impl Ellipse {
     /// The ellipse through all points up to a tolerance. `None` if there are fewer than five, if they lie on
-    /// another conic or on none, or if it is too flat to tell from a line.
+    /// another conic or on none, if they do not follow each other around it, or if it is too flat or too large
+    /// for them to tell it from a line.
     ///
     /// Five of the points, evenly spread in their order, make the conic; the others are held against it.
     pub fn through(points: &[DVec2], tolerance: f64) -> Option<Ellipse> {
@@ -39,7 +45,23 @@ impl Ellipse {
             major: ellipse.major * size,
             minor: ellipse.minor * size,
         };
-        (scaled.minor.length() > tolerance).then(|| scaled.normal(tolerance))
+        let is_told = scaled.minor.length() > tolerance && scaled.major.length() < LARGEST * size;
+        let found = is_told && scaled.is_followed_by(points, tolerance);
+        found.then(|| scaled.normal(tolerance))
+    }
+
+    /// Whether points follow each other around it: each after the one before, by less than a quarter turn.
+    /// Points of two lines side by side are on an ellipse too, a very long one.
+    fn is_followed_by(&self, points: &[DVec2], tolerance: f64) -> bool {
+        let steps = points.windows(2).filter(|pair| pair[0].distance(pair[1]) > tolerance);
+        let turns: Vec<f64> = steps
+            .map(|pair| {
+                let turn = self.parameter(pair[1]) - self.parameter(pair[0]);
+                turn - TAU * (turn / TAU).round()
+            })
+            .collect();
+        let forwards = turns.iter().sum::<f64>() > 0.0;
+        turns.iter().all(|&turn| (turn > 0.0) == forwards && turn.abs() < FRAC_PI_2)
     }
 
     /// The same ellipse with axes that do not depend on rounding: a circle along x, others to the right.
@@ -161,6 +183,10 @@ mod tests {
         assert!(Ellipse::through(&points(|t| dvec2(t, t * t * t)), 1e-6).is_none());
         assert!(Ellipse::through(&points(|t| dvec2(t, t * t)), 1e-6).is_none());
         assert!(Ellipse::through(&points(|t| dvec2(t, 2.0 * t)), 1e-6).is_none());
+        // There and back on two lines side by side.
+        let hairpin: fn(f64) -> DVec2 =
+            |t| dvec2(1.45 - (t - 1.45).abs(), f64::from(t > 1.45) + 1e-9 * t);
+        assert!(Ellipse::through(&points(hairpin), 1e-6).is_none());
         let circle = Ellipse::through(&points(|t| dvec2(libm::sin(t), libm::cos(t))), 1e-6);
         assert!(circle.expect("a circle").major.distance(DVec2::X) < 1e-9);
     }

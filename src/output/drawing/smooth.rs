@@ -16,7 +16,7 @@ use super::{
     frustum::Visible,
     lattice::Plane,
     links::{Link, NONE, each_side},
-    model::{Edge, Facet, Model, Outline},
+    model::{CHORD, Edge, Facet, Model, Outline},
     outline::FARTHEST,
     patches::{Patch, Patches},
     scene::Kind,
@@ -290,16 +290,23 @@ impl Smooth<'_> {
         let facets = faces.iter().any(|f| f.origin().surface == Surface::Facets);
         ends.iter().any(|&p| {
             let p = self.model.space[p as usize];
-            let [m, n] = patches.map(|patch| {
-                let Patch { field, outward } = self.patches.list[patch as usize];
-                field.slope(p).1 * outward
-            });
+            let [one, other] = patches.map(|patch| self.patches.list[patch as usize]);
+            let [m, n] = [one, other].map(|patch| patch.field.slope(p).1 * patch.outward);
             if facets {
-                m.dot(n) < self.crease
-            } else {
-                m.dot(n) <= 0.0 || m.cross(n).length() > TANGENT
+                return m.dot(n) < self.crease;
             }
+            let sine = m.cross(n).length();
+            let turns_back = m.dot(n) <= 0.0;
+            turns_back
+                || sine > TANGENT && (m.dot(n) < self.crease || !self.touch(one, other, p, sine))
         })
+    }
+
+    /// Whether two surfaces that meet at an angle are tangent up to the modeller's tolerance: moved by that, they
+    /// would touch along the edge. Rounded edges made of chords meet what they round so.
+    fn touch(&self, one: Patch, other: Patch, p: DVec3, sine: f64) -> bool {
+        let bend: f64 = [one, other].iter().map(|patch| 1.0 / patch.field.local(p).radius()).sum();
+        sine * sine <= 2.0 * bend * self.model.bound / CHORD
     }
 
     /// A stretch of an edge along which both faces keep to the front or the back.
