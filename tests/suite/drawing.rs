@@ -1,6 +1,7 @@
 //! Drawings of scenes whose line lengths are known.
 
 mod cases;
+mod edge_on;
 mod figures;
 mod language;
 mod rays;

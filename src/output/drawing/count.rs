@@ -80,7 +80,28 @@ impl<'a> Counter<'a> {
             return Some(Step { at, by });
         }
         let [low, high] = self.model.heights(edge, &facet.plane);
-        (low + (high - low) * at < 0.0).then_some(Step { at, by })
+        let height = low + (high - low) * at;
+        let gain = self.model.gain[edge.a as usize].min(self.model.gain[edge.b as usize]);
+        let behind = if height.abs() > self.model.contact * gain {
+            height < 0.0
+        } else {
+            self.is_passed(edge, at, outline, sighted)
+        };
+        behind.then_some(Step { at, by })
+    }
+
+    /// Whether an outline is nearer to the eye than an edge where they cross; the plane of a facet that is seen nearly
+    /// edge-on does not tell.
+    #[cold]
+    fn is_passed(&self, edge: &Edge, at: f64, outline: &Outline, [a, b]: [Sighted; 2]) -> bool {
+        let model = self.model;
+        let ends = [outline.a, outline.b];
+        if ends.contains(&edge.a) || ends.contains(&edge.b) {
+            return false;
+        }
+        let t = model.place_in_space(ends, a.side / (a.side - b.side));
+        let [p, q] = ends.map(|i| model.space[i as usize]);
+        nearer(&model.camera, [model.point_on(edge, at), p.lerp(q, t)]) > model.contact
     }
 
     /// Where an outline crosses a line within 0..1, and the change of the order there.

@@ -16,7 +16,7 @@ use super::{
     scene::{Kind, Options, Scene, Stroke},
     smooth,
 };
-use crate::geom::{Bounds, PolyMesh, Surface, bvh::Bvh};
+use crate::geom::{Bounds, FaceRef, PolyMesh, Surface, bvh::Bvh};
 
 /// A point nearer than this part of the scene's size to a face's plane lies in it: set operations round
 /// points to 2^-29 of the size, and a plane through rounded points misses others by a few times that.
@@ -24,6 +24,10 @@ const CONTACT: f64 = 1.0 / (1u64 << 26) as f64;
 
 /// Spans of edges shorter than this part of the picture are rounding: 64 lattice steps and more.
 const DUST: f64 = 1.0 / (1u64 << 38) as f64;
+
+/// A face whose picture is thinner than [`CONTACT`] is seen edge-on where the sine of the angle to the sight line is
+/// below this; others are small.
+const EDGE_ON: f64 = 1e-6;
 
 /// Chords are this part of the modeller's tolerance off their curve at most.
 pub const CHORD: f64 = 0.25;
@@ -289,25 +293,47 @@ impl Model {
             let (p, q) = (self.at[(base + a) as usize], self.at[(base + b) as usize]);
             area[face as usize] += p.x * q.y - p.y * q.x;
         });
-        for (face, area) in mesh.faces().zip(area) {
+        for (face, mut area) in mesh.faces().zip(area) {
             let normal = face.area_vector().normalize_or_zero();
+            if self.is_edge_on(face, base, area, normal) {
+                area = 0.0;
+            }
             let hides = area > 0.0 || open && area < 0.0;
             faces.normals.push(normal);
             faces.area.push(area);
             faces.facet.push(if hides { self.facets.len() as u32 } else { NONE });
             if hides {
-                self.add_facet(mesh, face.index(), base, normal * area.signum());
+                self.add_facet(face, base, normal, area < 0.0);
             }
         }
         faces
     }
 
-    fn add_facet(&mut self, mesh: &PolyMesh, face: usize, base: u32, normal: DVec3) {
+    /// Whether a face is seen as a line: its picture, of twice the area given, is as thin as set operations round
+    /// corners. It may fold over itself, and its plane does not tell what is behind it.
+    pub fn is_edge_on(&self, face: FaceRef, base: u32, area: f64, normal: DVec3) -> bool {
+        let thin = self.dust * (CONTACT / DUST);
+        let length = |p: DVec2| 2.0 * thin * p.max_element();
+        let picture = DVec2::splat(self.dust / DUST);
+        if area.abs() > length(picture) {
+            return false;
+        }
+        let corners = || face.outer().iter().map(|&c| (base + c) as usize);
+        let (min, max) = around(corners().map(|c| self.at[c]));
+        let on = corners().next().map_or(DVec3::ZERO, |c| self.space[c]);
+        let sine = normal.dot(self.camera.sight(on).normalize_or_zero());
+        area.abs() <= length(max - min) && sine.abs() <= EDGE_ON
+    }
+
+    /// Makes a facet of a face with its normal outwards, `turned` if its back is towards the eye.
+    fn add_facet(&mut self, face: FaceRef, base: u32, normal: DVec3, turned: bool) {
+        let normal = if turned { -normal } else { normal };
         let first = self.sides.len();
-        for corners in mesh.face(face).loops() {
+        for corners in face.loops() {
             let before = corners[corners.len() - 1];
             corners.iter().fold(before, |before, &corner| {
-                self.sides.push([base + before, base + corner]);
+                let side = [base + before, base + corner];
+                self.sides.push(if turned { [side[1], side[0]] } else { side });
                 corner
             });
         }

@@ -21,7 +21,7 @@ use super::{
     patches::{Patch, Patches},
     scene::Kind,
 };
-use crate::geom::{PolyMesh, Surface};
+use crate::geom::{FaceRef, PolyMesh, Surface};
 
 /// A surface is seen edge-on where the sine of the angle to the sight line is below this: rounding leaves
 /// contours that run along rows of corners that far off.
@@ -139,7 +139,11 @@ impl Smooth<'_> {
             let [p, q] = [a, b].map(|i| self.model.at[(self.base + i) as usize]);
             area[face as usize] += p.x * q.y - p.y * q.x;
         });
-        self.front = area.iter().map(|a| *a > 0.0).collect();
+        let faces = self.mesh.faces().zip(area).zip(&self.patches.normals);
+        let front = |((face, area), normal): ((FaceRef, f64), &DVec3)| {
+            area > 0.0 && !self.model.is_edge_on(face, self.base, area, *normal)
+        };
+        self.front = faces.map(front).collect();
     }
 
     /// How far a round surface is turned to the eye at a point: the sine of an angle, 0 on the contour.

@@ -27,9 +27,10 @@ pub fn spans(steps: &mut [Step], start: i32, dust: f64, out: &mut Vec<Span>) {
     let first = out.len();
     let (mut order, mut from) = (start, 0.0);
     for step in steps.iter() {
-        if step.at - from > dust {
-            append(out, first, Span { from, to: step.at, order: order.max(0) as u32 });
-            from = step.at;
+        let at = step.at.min(1.0);
+        if at - from > dust {
+            append(out, first, Span { from, to: at, order: order.max(0) as u32 });
+            from = at;
         }
         order += step.by;
     }

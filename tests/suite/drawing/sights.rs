@@ -26,9 +26,8 @@ const FLAT: f64 = 0.999_99;
 /// Share of the samples that may fail: those beside a corner or a part thinner than what is looked at.
 const SHARE: f64 = 0.01;
 
-/// Examples that the check finds fault with: the count loses its way where straight edges run behind outlines of round
-/// faces (a few percent of the lines of the first is drawn and hidden), and debug builds refuse the last at this chord error.
-const WRONG: [&str; 4] = ["bottle_cap.kata", "hinge.kata", "name_plate.kata", "phone_stand.kata"];
+/// Examples that the check finds fault with, one or two percent of their lines.
+const WRONG: [&str; 2] = ["hinge.kata", "name_plate.kata"];
 
 /// A triangle in the picture: x to the right, y up, z towards the eye.
 struct Triangle {
