@@ -29,6 +29,9 @@ const DUST: f64 = 1.0 / (1u64 << 38) as f64;
 /// below this; others are small.
 const EDGE_ON: f64 = 1e-6;
 
+/// Faces narrower than so many times the size of contact have no normal that tells how they are seen.
+const WIDE: f64 = 1e4;
+
 /// Chords are this part of the modeller's tolerance off their curve at most.
 pub const CHORD: f64 = 0.25;
 
@@ -319,6 +322,11 @@ impl Model {
             return false;
         }
         let corners = || face.outer().iter().map(|&c| (base + c) as usize);
+        let bounds = Bounds::of(corners().map(|c| self.space[c]));
+        let size = (bounds.max - bounds.min).max_element();
+        if face.area_vector().length() < WIDE * self.contact * size {
+            return false;
+        }
         let (min, max) = around(corners().map(|c| self.at[c]));
         let on = corners().next().map_or(DVec3::ZERO, |c| self.space[c]);
         let sine = normal.dot(self.camera.sight(on).normalize_or_zero());
