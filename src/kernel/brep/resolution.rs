@@ -30,10 +30,10 @@ const FLAT: f64 = 2.0;
 ///
 /// ```
 /// use glam::DVec3;
-/// use katachi::kernel::brep::{primitive::cuboid, resolution::lost};
-/// let plate = |low: f64| cuboid(DVec3::splat(low), DVec3::new(low + 1.0, low + 1.0, low + 1e-9));
-/// assert!(lost(&plate(0.0)).is_none());
-/// assert!(lost(&plate(1e8)).is_some());
+/// use katachi::{geom::Placement, kernel::brep::{primitive::cuboid, resolution::lost}};
+/// let plate = cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, 1e-9));
+/// assert!(lost(&plate).is_none());
+/// assert!(lost(&plate.placed(&Placement::translation(DVec3::splat(1e8)))).is_some());
 /// ```
 pub fn lost(solid: &Polyhedron) -> Option<DVec3> {
     let mesh = solid.mesh();
