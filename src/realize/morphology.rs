@@ -44,13 +44,3 @@ pub fn offset(
     }
     offset::by_ellipsoid(solid, radii, tolerance)
 }
-
-/// A solid with its edges rounded.
-pub fn fillet(
-    solid: &Polyhedron,
-    convex: f64,
-    concave: f64,
-    tolerance: Tolerance,
-) -> Result<Polyhedron, OffsetError> {
-    offset::fillet(solid, convex, concave, tolerance)
-}

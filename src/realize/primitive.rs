@@ -11,6 +11,7 @@ use super::{
 };
 use crate::{
     base::{Code, Diagnostic},
+    convert::offset::fillet,
     geom::{Region, sides as count},
     kernel::brep::{
         Polyhedron,
@@ -142,7 +143,7 @@ pub fn make(realizer: &Realizer, graph: &ShapeGraph, unit: Stretched) -> Made<Po
         }
         Node::Fillet { child, convex, concave } => {
             let solid = realizer.solid_made(graph, *child, unit.stretch)?;
-            morphology::fillet(&solid.polyhedron, *convex, *concave, tolerance).at(origin)
+            fillet(&solid.polyhedron, *convex, *concave, tolerance).at(origin)
         }
         Node::ImportSolid { file, heal } => {
             import::solid(realizer, file, *heal).map_err(|e| figure::placed(e, graph, id))
