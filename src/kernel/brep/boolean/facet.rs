@@ -131,6 +131,14 @@ impl Facets {
         start as usize..self.owner_ends[owner] as usize
     }
 
+    /// The boxes of the facets of every operand.
+    pub fn owner_bounds(&self) -> impl Iterator<Item = Bounds> + '_ {
+        (0..self.owner_count()).map(|owner| {
+            let list = self.list[self.of_owner(owner)].iter();
+            list.fold(Bounds::EMPTY, |all, facet| all.with(facet.bounds))
+        })
+    }
+
     /// The box of all facets.
     pub fn bounds(&self) -> Bounds {
         self.list.iter().fold(Bounds::EMPTY, |all, facet| all.with(facet.bounds))
@@ -358,6 +366,18 @@ impl Facets {
             facet.plane = facet.plane.map(|(plane, turned)| (plane, !turned));
         }
         self.list.push(facet);
+    }
+
+    /// Gives all planes other numbers; [`NONE`] stays.
+    pub fn renumber_planes(&mut self, mut number: impl FnMut(u32) -> u32) {
+        self.supports.iter_mut().for_each(|support| *support = number(*support));
+        let known = self.list.iter_mut().filter_map(|facet| facet.plane.as_mut());
+        known.for_each(|(plane, _)| *plane = number(*plane));
+    }
+
+    /// Gives all corners other numbers.
+    pub fn renumber_points(&mut self, mut number: impl FnMut(u32) -> u32) {
+        self.corners.iter_mut().for_each(|corner| *corner = number(*corner));
     }
 
     /// Puts the corners of dropped triangles on the edges that run over them. Triangles that share

@@ -10,7 +10,8 @@ use rayon::prelude::*;
 
 use super::{
     facet::Facets,
-    hierarchy::{Bounds, Hierarchy},
+    hierarchy::Hierarchy,
+    rim::Rim,
     space::{NEAR, NONE, Offset, Space, main_axis},
     union_find::Sets,
 };
@@ -102,11 +103,7 @@ fn findings(pairs: &[(u32, u32)], facets: &Facets, space: &Space) -> Vec<(u32, F
 pub(super) fn candidates(facets: &Facets, trusted: bool) -> Vec<(u32, u32)> {
     let mut pairs = vec![];
     let ranges: Vec<_> = (0..facets.owner_count()).map(|owner| facets.of_owner(owner)).collect();
-    let bounds = |range: &std::ops::Range<usize>| {
-        let list = &facets.list()[range.clone()];
-        list.iter().fold(Bounds::EMPTY, |all, f| all.with(f.bounds))
-    };
-    let owners = Hierarchy::new(ranges.iter().map(bounds));
+    let owners = Hierarchy::new(facets.owner_bounds());
     let mut owner_pairs = vec![];
     owners.own_pairs(|a, b| owner_pairs.push((a as usize, b as usize)));
     if !trusted {
@@ -226,6 +223,12 @@ impl Scratch {
         let (p, q) = (known_plane(f, facets), known_plane(g, facets));
         let [offsets_f, offsets_g] = &mut self.offsets;
         if !straddles(f, q, facets, space, offsets_f) || !straddles(g, p, facets, space, offsets_g)
+        {
+            return None;
+        }
+        if let (Some(first), Some(second)) =
+            (Rim::of(f, facets, offsets_f), Rim::of(g, facets, offsets_g))
+            && first.shares_all(second, space)
         {
             return None;
         }

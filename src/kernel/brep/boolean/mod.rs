@@ -25,6 +25,7 @@
 //! arrangement as above of what stages before it left, but cuts only what is near ([`rest`]), finds
 //! out where components stand by the surfaces themselves ([`locate`]), and leaves a surface whose
 //! corners are not rounded. Where stages cannot tell something, one arrangement of all does.
+//!    Stages that do not wait for each other are evaluated at the same time ([`fork`]).
 //!
 //! Every decision is the exact sign of an integer expression (`geom::predicates` states the bit
 //! budget); doubles only filter. There is no tolerance. Coplanar and touching operands are ordinary:
@@ -56,6 +57,7 @@ mod clusters;
 mod expression;
 mod facet;
 mod flat;
+mod fork;
 mod frame;
 mod graph;
 mod grid;
@@ -72,6 +74,7 @@ mod place;
 mod polygon;
 mod region;
 mod rest;
+mod rim;
 mod schedule;
 mod seed;
 mod space;

@@ -15,6 +15,7 @@ use crate::geom::predicates::{Int3, Meet, Plane, cross, minus};
 pub(super) const NONE: u32 = u32::MAX;
 
 /// A plane with its doubles, for filters.
+#[derive(Clone)]
 struct Stored {
     plane: Plane,
     normal: [f64; 3],
@@ -22,6 +23,7 @@ struct Stored {
 }
 
 /// A point: where it is, nearly, and the three planes that define it ([`NONE`] for lattice points).
+#[derive(Clone)]
 struct Point {
     near: [f64; 3],
     planes: [u32; 3],
@@ -52,7 +54,7 @@ pub(super) struct Offset {
 }
 
 /// All planes and points of an operation.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Space {
     planes: Vec<Stored>,
     plane_numbers: FxHashMap<Plane, u32>,
@@ -86,6 +88,11 @@ impl Space {
     /// The plane of a number.
     pub fn plane(&self, plane: u32) -> &Plane {
         &self.planes[plane as usize].plane
+    }
+
+    /// The number of planes so far.
+    pub fn plane_count(&self) -> usize {
+        self.planes.len()
     }
 
     /// The number of points so far.
@@ -201,6 +208,27 @@ impl Space {
         let before = self.cells.insert(near.map(cell), point).unwrap_or(NONE);
         self.points.push(Point { near, planes, before });
         point
+    }
+
+    /// The planes that define a point, [`NONE`] for a lattice point.
+    pub fn planes_of(&self, point: u32) -> [u32; 3] {
+        self.points[point as usize].planes
+    }
+
+    /// The number here of a plane of another space.
+    pub fn adopt_plane(&mut self, plane: u32, from: &Space) -> u32 {
+        let exact = *from.plane(plane);
+        let is_looked_up = from.plane_numbers.get(&exact) == Some(&plane);
+        if is_looked_up { self.add_plane(exact) } else { self.store_plane(exact) }
+    }
+
+    /// The number here of a point of another space, given the numbers here of the planes that define it.
+    pub fn adopt_point(&mut self, point: u32, planes: [u32; 3], from: &Space) -> u32 {
+        if let Some(at) = from.lattice_point(point) {
+            return self.add_lattice_point(at);
+        }
+        let near = from.near(point);
+        self.known_at(near, planes).unwrap_or_else(|| self.store(near, planes))
     }
 
     /// The sign of a point to a plane: 1 where its normal points, 0 on it, else -1.

@@ -5,17 +5,20 @@ use super::{
     cells::Complex,
     classify::{Links, Sides},
     facet::Facets,
-    frame::Plan,
+    fork::Fork,
+    frame::{Plan, deeper},
+    hierarchy::Bounds,
     lattice::Lattice,
     patch::{Borders, Patches},
     place::{Places, Sources},
-    schedule::{self, Operand},
+    schedule::{self, Operand, Stage},
     space::Space,
     stage,
     union_find::Sets,
 };
 use crate::kernel::brep::Polyhedron;
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// Evaluates an operation in stages ([`Assembly::solid`]); `None` where one stage is as good, or where stages fail.
 pub(super) fn evaluate(
@@ -24,43 +27,105 @@ pub(super) fn evaluate(
     (facets, sources, patches): (&Facets, &Sources, &Patches),
     space: &mut Space,
 ) -> Option<(Polyhedron, Option<DVec3>)> {
-    if plan.leaves.len() < 3 || facets.has_collapsed {
+    if plan.leaves.len() < 3 || facets.has_collapsed || !patches.list.is_empty() {
         return None;
     }
-    let leaves: Vec<Facets> =
-        (0..plan.leaves.len()).map(|leaf| facets.operand(leaf as u32)).collect();
-    let boxes: Vec<_> = leaves.iter().map(Facets::bounds).collect();
-    let stages = schedule::stages(&plan.expression, &boxes);
-    if stages.len() < 2
-        || !patches.list.is_empty()
-        || !leaves.iter().all(|l| is_one_shell(l, space))
-    {
+    let boxes: Vec<Bounds> = facets.owner_bounds().collect();
+    let list = schedule::stages(&plan.expression, &boxes);
+    if list.len() < 2 || !are_shells(facets, space) {
         return None;
     }
-    let mut leaves: Vec<Option<Facets>> = leaves.into_iter().map(Some).collect();
-    let mut done: Vec<Option<Facets>> = vec![];
-    for stage in &stages {
-        let mut take = |operand: &Operand| match operand {
-            Operand::Leaf(leaf) => leaves[*leaf as usize].take(),
-            Operand::Stage(stage) => done[*stage as usize].take(),
-        };
-        let operands = stage.operands.iter().map(&mut take).collect::<Option<Vec<Facets>>>()?;
-        let result = stage::evaluate(&operands, &stage.expression, plan, space)?;
-        done.push(Some(result));
-    }
-    let mut whole = done.pop()??;
+    let mut stages = Stages { list, weights: vec![], facets, plan };
+    stages.weigh();
+    let mut whole = stages.result(stages.list.len() as u32 - 1, space)?;
     assembled(&mut whole, plan, &Places::new(plan, lattice, sources, facets), patches, space)
 }
 
-/// Whether the facets of an operand hang together, so that it winds once around what it encloses.
-fn is_one_shell(facets: &Facets, space: &Space) -> bool {
-    let mut sets = Sets::new(space.point_count());
-    for facet in 0..facets.list().len() as u32 {
-        facets.edges(facet).for_each(|(a, b)| sets.join(a, b));
+/// The stages of an operation, and what they take up.
+struct Stages<'a> {
+    list: Vec<Stage>,
+    /// How many facets of leaves go into each stage.
+    weights: Vec<usize>,
+    facets: &'a Facets,
+    plan: &'a Plan,
+}
+
+/// So many facets are worth a second thread, if they are also this part of all.
+const HEAVY: usize = 64;
+const PART: usize = 8;
+
+impl Stages<'_> {
+    /// Finds the weights.
+    fn weigh(&mut self) {
+        for stage in &self.list {
+            let weight = |operand: &Operand| match *operand {
+                Operand::Leaf(leaf) => self.facets.of_owner(leaf as usize).len(),
+                Operand::Stage(stage) => self.weights[stage as usize],
+            };
+            let weight = stage.operands.iter().map(weight).sum();
+            self.weights.push(weight);
+        }
     }
-    let mut corners = (0..facets.list().len() as u32).flat_map(|f| facets.loops(f).flatten());
-    let first = corners.next().map(|&c| sets.find(c));
-    corners.all(|&corner| Some(sets.find(corner)) == first)
+
+    /// Whether an operand is worth a thread of its own. There are few such, so the space is copied seldom.
+    fn is_heavy(&self, operand: Operand) -> bool {
+        let Operand::Stage(stage) = operand else { return false };
+        let weight = self.weights[stage as usize];
+        weight >= HEAVY && weight * PART >= self.facets.list().len()
+    }
+
+    /// What a stage leaves.
+    fn result(&self, stage: u32, space: &mut Space) -> Option<Facets> {
+        deeper(|| {
+            let stage = &self.list[stage as usize];
+            let operands = self.operands(&stage.operands, space)?;
+            stage::evaluate(&operands, &stage.expression, self.plan, space)
+        })
+    }
+
+    /// What a stage takes up; several heavy operands at the same time.
+    fn operands(&self, list: &[Operand], space: &mut Space) -> Option<Vec<Facets>> {
+        let heavy: Vec<Operand> = list.iter().copied().filter(|o| self.is_heavy(*o)).collect();
+        if heavy.len() < 2 {
+            return list.iter().map(|operand| self.operand(*operand, space)).collect();
+        }
+        let apart = |operand: &Operand| {
+            let mut fork = Fork::of(space);
+            self.operand(*operand, &mut fork.space).map(|found| (fork, found))
+        };
+        let parts: Vec<(Fork, Facets)> = heavy.par_iter().map(apart).collect::<Option<_>>()?;
+        let mut parts = parts.into_iter();
+        let mut next = |operand: &Operand| {
+            if !self.is_heavy(*operand) {
+                return self.operand(*operand, space);
+            }
+            let (fork, mut found) = parts.next()?;
+            fork.bring_back(&mut found, space);
+            Some(found)
+        };
+        list.iter().map(&mut next).collect()
+    }
+
+    fn operand(&self, operand: Operand, space: &mut Space) -> Option<Facets> {
+        match operand {
+            Operand::Leaf(leaf) => Some(self.facets.operand(leaf)),
+            Operand::Stage(stage) => self.result(stage, space),
+        }
+    }
+}
+
+/// Whether the facets of every leaf hang together, so that it winds once around what it encloses.
+fn are_shells(facets: &Facets, space: &Space) -> bool {
+    let mut sets = Sets::new(space.point_count());
+    (0..facets.owner_count()).all(|leaf| {
+        let range = facets.of_owner(leaf).start as u32..facets.of_owner(leaf).end as u32;
+        range.clone().flat_map(|facet| facets.edges(facet)).for_each(|(a, b)| sets.join(a, b));
+        let corners = || range.clone().flat_map(|facet| facets.loops(facet).flatten().copied());
+        let first = corners().next().map(|corner| sets.find(corner));
+        let is_one = corners().all(|corner| Some(sets.find(corner)) == first);
+        corners().for_each(|corner| sets.part(corner));
+        is_one
+    })
 }
 
 /// The solid that a closed surface bounds, its vertices rounded ([`Assembly::solid`]).

@@ -32,6 +32,11 @@ impl Sets {
         least.min(other)
     }
 
+    /// Makes a number a set of its own; all others of its set must be parted too.
+    pub fn part(&mut self, number: u32) {
+        self.0[number as usize] = number;
+    }
+
     /// Joins the sets of two numbers.
     pub fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.find(a), self.find(b));
