@@ -58,14 +58,14 @@ mod tests {
     #[test]
     fn points_found_twice_are_one() {
         let mut home = Space::default();
-        let mut plane = |space: &mut Space, normal: [i128; 3], at: [i64; 3]| {
+        let plane = |space: &mut Space, normal: [i128; 3], at: [i64; 3]| {
             space.add_plane(Plane::through(normal, at).expect("a direction").0)
         };
         let [x, y] = [[3, 1, 0], [1, -2, 0]].map(|n| plane(&mut home, n, [1, 0, 0]));
         let corner = home.add_lattice_point([7, 8, 9]);
         let mut fork = Fork::of(&home);
         let heights = [[0, 1, 3], [1, 0, 5], [2, 1, 7]];
-        let mut corners = |space: &mut Space, order: [usize; 3]| {
+        let corners = |space: &mut Space, order: [usize; 3]| {
             order.map(|i| {
                 let z = plane(space, heights[i], [0, 0, 1]);
                 space.meet(x, y, z).expect("one point")
