@@ -20,6 +20,7 @@ const PRELUDE: &[(&str, &str)] = &[
     ("std/measures", include_str!("../../stdlib/measures.kata")),
     ("std/placing", include_str!("../../stdlib/placing.kata")),
     ("std/profiles", include_str!("../../stdlib/profiles.kata")),
+    ("std/shades", include_str!("../../stdlib/shades.kata")),
     ("std/solids", include_str!("../../stdlib/solids.kata")),
     ("std/strings", include_str!("../../stdlib/strings.kata")),
     ("std/surfaces", include_str!("../../stdlib/surfaces.kata")),

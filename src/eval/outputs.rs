@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     base::{Code, Diagnostic, Span},
-    shape::{PageSpec, ShapeId, ViewSpec},
+    shape::{PageSpec, ShadeSpec, ShapeId, ViewSpec},
     syntax::ast::OutputKind,
 };
 
@@ -78,6 +78,8 @@ pub enum Product {
     Shape(ShapeId),
     /// A view.
     View(Arc<ViewSpec>),
+    /// A picture.
+    Shade(Arc<ShadeSpec>),
     /// A page.
     Sheet(Arc<PageSpec>),
 }
@@ -271,6 +273,7 @@ impl Evaluator<'_> {
     fn as_product(&mut self, value: &Value, at: Span) -> Outcome<Option<Product>> {
         Ok(match value {
             Value::Drawing(view) => Some(Product::View(view.clone())),
+            Value::Picture(shade) => Some(Product::Shade(shade.clone())),
             Value::Page(page) => Some(Product::Sheet(page.clone())),
             value => self.as_shape(value, at)?.map(Product::Shape),
         })

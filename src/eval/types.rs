@@ -54,6 +54,8 @@ pub enum Type {
     Figure,
     /// A drawing.
     Drawing,
+    /// A picture.
+    Picture,
     /// A page.
     Page,
     /// A list of two or three lengths.
@@ -65,7 +67,7 @@ pub enum Type {
 const NAMES: &[&str] = &[
     "Any", "Number", "Length", "Angle", "Area", "Volume", "Quantity", "Count", "Bool", "String",
     "List", "Record", "Range", "Function", "Solid", "Profile", "Shape", "Curve", "Surface",
-    "Figure", "Drawing", "Page", "Optional", "Point", "Vector",
+    "Figure", "Drawing", "Picture", "Page", "Optional", "Point", "Vector",
 ];
 
 /// Why a value does not fit.
@@ -101,6 +103,7 @@ impl Type {
             "Surface" => Type::Surface,
             "Figure" => Type::Figure,
             "Drawing" => Type::Drawing,
+            "Picture" => Type::Picture,
             "Page" => Type::Page,
             "Point" => Type::Point,
             "Vector" => Type::Vector,
@@ -141,6 +144,7 @@ impl Type {
             | (Type::Surface, Value::Surface(_))
             | (Type::Figure, Value::Curve(_) | Value::Surface(_))
             | (Type::Drawing, Value::Drawing(_))
+            | (Type::Picture, Value::Picture(_))
             | (Type::Page, Value::Page(_))
             | (Type::Optional(_), Value::Symbol(Symbol::None)) => Ok(()),
             (Type::Optional(inner), value) => inner.check(graph, value),
@@ -363,6 +367,7 @@ impl Type {
             Type::Surface => "a surface".into(),
             Type::Figure => "a solid, profile, curve or surface".into(),
             Type::Drawing => "a drawing".into(),
+            Type::Picture => "a picture".into(),
             Type::Page => "a page".into(),
             Type::Optional(inner) => inner.words(),
             Type::Point => "a point (two or three lengths)".into(),
@@ -444,6 +449,7 @@ impl fmt::Display for Type {
             Type::Surface => "Surface",
             Type::Figure => "Figure",
             Type::Drawing => "Drawing",
+            Type::Picture => "Picture",
             Type::Page => "Page",
             Type::Point => "Point",
             Type::Vector => "Vector",

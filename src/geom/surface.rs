@@ -54,6 +54,41 @@ pub enum Surface {
 }
 
 impl Surface {
+    /// Signed distance from a point to the surface, mm, and the unit normal there, outwards: away from the axis or
+    /// the centre. 0 and +z for a plane and for facets, which do not know where they are.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use katachi::geom::Surface;
+    /// let ball = Surface::Sphere { center: DVec3::ZERO, radius: 2.0 };
+    /// assert_eq!(ball.slope(DVec3::X * 5.0), (3.0, DVec3::X));
+    /// ```
+    pub fn slope(&self, p: DVec3) -> (f64, DVec3) {
+        match *self {
+            Surface::Cylinder { point, axis, radius } => {
+                let (_, r, out) = around_axis(p - point, axis);
+                (r - radius, out)
+            }
+            Surface::Cone { apex, axis, slope } => {
+                let (h, r, out) = around_axis(p - apex, axis);
+                let secant = (1.0 + slope * slope).sqrt();
+                ((r - slope * h) / secant, (out - axis * slope) / secant)
+            }
+            Surface::Sphere { center, radius } => {
+                let v = p - center;
+                let r = v.length();
+                (r - radius, if r > 0.0 { v / r } else { DVec3::Z })
+            }
+            Surface::Torus { center, axis, major, minor } => {
+                let (h, r, out) = around_axis(p - center, axis);
+                let tube = out * (r - major) + axis * h;
+                let q = tube.length();
+                (q - minor, if q > 0.0 { tube / q } else { out })
+            }
+            Surface::Plane | Surface::Facets => (0.0, DVec3::Z),
+        }
+    }
+
     /// The surface after a placement. A map that is not a similarity turns round surfaces into
     /// [`Surface::Facets`]; planes stay planes.
     pub fn placed(&self, placement: &Placement) -> Surface {
@@ -152,6 +187,16 @@ fn similarity(placement: &Placement) -> Option<f64> {
     let near = lengths.iter().all(|l| (l - square).abs() <= SIMILARITY * square)
         && angles.iter().all(|a| a.abs() <= SIMILARITY * square);
     (near && square > 0.0).then(|| square.sqrt())
+}
+
+/// A vector as its part along an axis, the length of its part across, and the direction of that; any direction
+/// across where there is none.
+pub fn around_axis(v: DVec3, axis: DVec3) -> (f64, f64, DVec3) {
+    let height = v.dot(axis);
+    let across = v - axis * height;
+    let radius = across.length();
+    let outwards = if radius > 0.0 { across / radius } else { axis.any_orthonormal_vector() };
+    (height, radius, outwards)
 }
 
 #[cfg(test)]

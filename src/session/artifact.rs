@@ -11,12 +11,13 @@ use crate::{
     eval::Product,
     geom::{PolyMesh, Region},
     output::{
+        halftone::PictureFormat,
         mesh::{self, MeshFormat, NamedMesh},
         scad,
         sheet::{self, DrawingFormat, Page},
     },
     realize::Realizer,
-    shape::{PageSpec, ShapeGraph, ShapeId, Stretched, ViewSpec},
+    shape::{PageSpec, ShadeSpec, ShapeGraph, ShapeId, Stretched, ViewSpec},
 };
 
 /// What a file is written as.
@@ -28,6 +29,8 @@ pub enum Format {
     Scad,
     /// A drawing.
     Drawing(DrawingFormat),
+    /// A picture.
+    Picture(PictureFormat),
 }
 
 impl Format {
@@ -45,7 +48,8 @@ impl Format {
     }
 
     fn of_paper(extension: &str) -> Option<Format> {
-        DrawingFormat::from_name(extension).map(Format::Drawing)
+        let picture = || PictureFormat::from_name(extension).map(Format::Picture);
+        DrawingFormat::from_name(extension).map(Format::Drawing).or_else(picture)
     }
 
     fn of_source(extension: &str) -> Option<Format> {
@@ -58,6 +62,9 @@ impl Format {
     /// What views and sheets are written as when nobody says.
     pub const SVG: Format = Format::Drawing(DrawingFormat::Svg);
 
+    /// What pictures are written as when nobody says.
+    pub const PNG: Format = Format::Picture(PictureFormat::Png);
+
     /// All names, for messages.
     pub fn names() -> String {
         let names: Vec<&str> = MeshFormat::ALL.iter().map(|format| format.name()).collect();
@@ -68,7 +75,7 @@ impl Format {
     pub fn extensions() -> String {
         let mut names: Vec<&str> = MeshFormat::ALL.iter().map(|f| f.extension()).collect();
         names.dedup();
-        format!(".{}, .scad, .svg, .pdf or .dxf", names.join(", ."))
+        format!(".{}, .scad, .svg, .pdf, .dxf, .png or .txt", names.join(", ."))
     }
 
     /// The extension of its files.
@@ -77,6 +84,16 @@ impl Format {
             Format::Mesh(format) => format.extension(),
             Format::Scad => "scad",
             Format::Drawing(format) => format.name(),
+            Format::Picture(format) => format.name(),
+        }
+    }
+
+    /// Whether it holds what an output is.
+    pub fn holds(self, product: &Product) -> bool {
+        match product {
+            Product::Shape(_) => matches!(self, Format::Mesh(_) | Format::Scad),
+            Product::View(_) | Product::Sheet(_) => self.is_drawing(),
+            Product::Shade(_) => self.of_picture().is_some(),
         }
     }
 
@@ -85,17 +102,26 @@ impl Format {
         matches!(self, Format::Drawing(_))
     }
 
+    /// What a picture is written as in this format.
+    fn of_picture(self) -> Option<PictureFormat> {
+        match self {
+            Format::Picture(format) => Some(format),
+            Format::Drawing(DrawingFormat::Svg) => Some(PictureFormat::Svg),
+            _ => None,
+        }
+    }
+
     fn holds_parts(self) -> bool {
         match self {
             Format::Mesh(format) => format.holds_parts(),
             Format::Scad => true,
-            Format::Drawing(_) => false,
+            Format::Drawing(_) | Format::Picture(_) => false,
         }
     }
 }
 
 /// The names of the formats of drawings, for messages.
-const DRAWINGS: &str = "svg, pdf or dxf";
+const DRAWINGS: &str = "svg, pdf, dxf, png or txt";
 
 /// A named shape and where the model says so.
 #[derive(Clone, PartialEq, Debug)]
@@ -124,6 +150,8 @@ pub struct Paper {
 pub enum PaperKind {
     /// A view, on paper of its own size.
     View(Arc<ViewSpec>),
+    /// A picture.
+    Shade(Arc<ShadeSpec>),
     /// A page.
     Sheet(Arc<PageSpec>),
 }
@@ -133,6 +161,7 @@ impl PaperKind {
     pub fn product(&self) -> Product {
         match self {
             PaperKind::View(view) => Product::View(view.clone()),
+            PaperKind::Shade(shade) => Product::Shade(shade.clone()),
             PaperKind::Sheet(page) => Product::Sheet(page.clone()),
         }
     }
@@ -192,8 +221,8 @@ impl Artifact {
         graph: &ShapeGraph,
         said: &mut Vec<Diagnostic>,
     ) -> Result<Vec<u8>, Diagnostic> {
-        if let (Content::Paper(paper), Format::Drawing(format)) = (&self.content, self.format) {
-            return Ok(sheet::write(format, &drawn(drafter, paper, said)?));
+        if let Content::Paper(paper) = &self.content {
+            return self.encode_paper(paper, drafter, said);
         }
         let mut solids = vec![];
         for part in self.parts() {
@@ -213,7 +242,37 @@ impl Artifact {
                     .map(String::into_bytes)
                     .map_err(|e| self.refused(&e.to_string()))
             }
-            Format::Drawing(_) => Err(self.refused("a drawing format holds no solids")),
+            Format::Drawing(_) | Format::Picture(_) => {
+                Err(self.refused("a format of drawings and pictures holds no solids"))
+            }
+        }
+    }
+
+    fn encode_paper(
+        &self,
+        paper: &Paper,
+        drafter: &Drafter,
+        said: &mut Vec<Diagnostic>,
+    ) -> Result<Vec<u8>, Diagnostic> {
+        match (&paper.kind, self.format) {
+            (PaperKind::Shade(spec), format) => {
+                let Some(format) = format.of_picture() else {
+                    return Err(self.refused("this format holds no picture"));
+                };
+                let (halftone, warnings) = drafter.shade(spec)?;
+                said.extend(warnings);
+                let words = "only a picture with `screen = overstrike()` is text";
+                format.write(&halftone, &paper.name).ok_or_else(|| self.refused(words))
+            }
+            (PaperKind::View(view), Format::Drawing(format)) => {
+                let drawn = drafter.draw(view)?;
+                said.extend(drawn.warnings.clone());
+                Ok(sheet::write(format, &drawn.figure.page(&paper.name, &Letterer)))
+            }
+            (PaperKind::Sheet(spec), Format::Drawing(format)) => {
+                Ok(sheet::write(format, &composed(drafter, &paper.name, spec, said)?))
+            }
+            _ => Err(self.refused("this format holds no lines")),
         }
     }
 
@@ -239,25 +298,23 @@ impl Artifact {
     }
 }
 
-/// A drawing or page with its ink. All reasons but the first why a page cannot be made are added to `said`.
-fn drawn(drafter: &Drafter, paper: &Paper, said: &mut Vec<Diagnostic>) -> Result<Page, Diagnostic> {
-    match &paper.kind {
-        PaperKind::View(view) => {
-            let drawn = drafter.draw(view)?;
-            said.extend(drawn.warnings.clone());
-            Ok(drawn.figure.page(&paper.name, &Letterer))
+/// A page with its ink. All reasons but the first why it cannot be made are added to `said`.
+fn composed(
+    drafter: &Drafter,
+    name: &str,
+    spec: &PageSpec,
+    said: &mut Vec<Diagnostic>,
+) -> Result<Page, Diagnostic> {
+    match page(drafter, name, spec) {
+        Ok((page, warnings)) => {
+            said.extend(warnings);
+            Ok(page)
         }
-        PaperKind::Sheet(spec) => match page(drafter, &paper.name, spec) {
-            Ok((page, warnings)) => {
-                said.extend(warnings);
-                Ok(page)
-            }
-            Err(mut errors) => {
-                let first = errors.remove(0);
-                said.extend(errors);
-                Err(first)
-            }
-        },
+        Err(mut errors) => {
+            let first = errors.remove(0);
+            said.extend(errors);
+            Err(first)
+        }
     }
 }
 

@@ -45,8 +45,8 @@ type Outcome = Result<Arc<Drawn>, Diagnostic>;
 
 /// Draws views of the shapes of one graph; each view once.
 pub struct Drafter<'a> {
-    realizer: &'a Realizer<'a>,
-    graph: &'a ShapeGraph,
+    pub(super) realizer: &'a Realizer<'a>,
+    pub(super) graph: &'a ShapeGraph,
     watch: &'a dyn Watch,
     drawn: RefCell<Vec<(Arc<ViewSpec>, Outcome)>>,
 }
@@ -90,7 +90,8 @@ impl<'a> Drafter<'a> {
             warnings.extend(realize::warnings(self.realizer, self.graph, shape));
             solids.push(solid.polyhedron);
         }
-        let camera = camera(view).map_err(|error| refused(&error, view.place.0))?;
+        let camera = sight(view.projection, view.target, view.window);
+        let camera = camera.map_err(|error| refused(&error, view.place.0))?;
         during(self.watch, Phase::Drawings, || {
             // Holes keep their centre lines when the cut takes half of them.
             let axes = match view.center_lines {
@@ -167,25 +168,29 @@ impl Lettering for Letterer {
 /// Chord error of letters for each millimetre of their height: far below what a pen shows.
 const LETTER_CHORD: f64 = 2e-3;
 
-fn at(code: Code, words: impl Into<String>, span: Span) -> Diagnostic {
+pub(super) fn at(code: Code, words: impl Into<String>, span: Span) -> Diagnostic {
     Diagnostic::error(code, words).label(span, "")
 }
 
-fn refused(error: &CameraError, span: Span) -> Diagnostic {
+pub(super) fn refused(error: &CameraError, span: Span) -> Diagnostic {
     at(Code::Degenerate, error.to_string(), span)
 }
 
-/// The camera of a view.
-fn camera(view: &ViewSpec) -> Result<Camera, CameraError> {
-    let camera = match view.projection {
-        Projection::Side(side) => Camera::view(side_view(side)).at(view.target),
-        Projection::Direction(direction) => Camera::parallel(direction)?.at(view.target),
+/// The camera of a view or picture.
+pub(super) fn sight(
+    projection: Projection,
+    target: DVec3,
+    window: Option<[DVec2; 2]>,
+) -> Result<Camera, CameraError> {
+    let camera = match projection {
+        Projection::Side(side) => Camera::view(side_view(side)).at(target),
+        Projection::Direction(direction) => Camera::parallel(direction)?.at(target),
         Projection::Perspective { eye, fov } => {
-            let camera = Camera::perspective(eye, view.target)?;
+            let camera = Camera::perspective(eye, target)?;
             fov.map_or(Ok(camera), |fov| camera.with_field_of_view(fov, ASPECT))?
         }
     };
-    match view.window {
+    match window {
         Some([min, max]) => camera.with_window(Window { min, max }),
         None => Ok(camera),
     }
@@ -259,7 +264,7 @@ pub(super) fn short(x: f64) -> String {
     format!("{}", (x * 1e4).round() / 1e4 + 0.0)
 }
 
-fn style(spec: &StyleSpec) -> sheet::Style {
+pub(super) fn style(spec: &StyleSpec) -> sheet::Style {
     let mut style = sheet::Style::default();
     for (name, change) in &spec.pens {
         let pen = style.pen_mut(layer(*name));

@@ -21,6 +21,7 @@ mod host;
 mod model;
 mod outline;
 mod patterns;
+mod shading;
 mod sheet;
 mod subjects;
 

@@ -225,7 +225,9 @@ impl<'s> Model<'s> {
             papers.retain(|paper| !written.contains(&paper.name));
         }
         diagnostics.extend(self.check(names));
-        let of_parts = format.filter(|format| !format.is_drawing()).unwrap_or(Format::STL);
+        let of_parts = format
+            .filter(|format| matches!(format, Format::Mesh(_) | Format::Scad))
+            .unwrap_or(Format::STL);
         let of_paper = format.filter(|format| format.is_drawing()).unwrap_or(Format::SVG);
         for part in parts {
             let file = format!("{}.{}", part.name, of_parts.extension());
@@ -233,8 +235,14 @@ impl<'s> Model<'s> {
             artifacts.push(Artifact { file, format: of_parts, content });
         }
         for paper in papers {
-            let file = format!("{}.{}", paper.name, of_paper.extension());
-            artifacts.push(Artifact { file, format: of_paper, content: Content::Paper(paper) });
+            let format = match paper.kind {
+                PaperKind::View(_) | PaperKind::Sheet(_) => of_paper,
+                PaperKind::Shade(_) => {
+                    format.filter(|f| f.holds(&paper.kind.product())).unwrap_or(Format::PNG)
+                }
+            };
+            let file = format!("{}.{}", paper.name, format.extension());
+            artifacts.push(Artifact { file, format, content: Content::Paper(paper) });
         }
         let (artifacts, clashes) = clash::refuse_clashes(artifacts);
         diagnostics.extend(clashes);
@@ -287,16 +295,15 @@ impl<'s> Model<'s> {
         let (mut parts, mut papers) = (vec![], vec![]);
         for ExportPart { name, product, .. } in products {
             let span = export.span;
-            let suits = matches!(product, Product::Shape(_)) != format.is_drawing();
-            if !suits {
-                return Err(unsuited(&name, format, export));
+            if !format.holds(&product) {
+                return Err(unsuited(&name, &product, format, export));
             }
             match paper_kind(&product) {
                 Ok(kind) => papers.push(Paper { name, kind, span }),
                 Err(shape) => parts.push(self.solid_part(Part { name, shape, span })?),
             }
         }
-        if format.is_drawing() {
+        if !papers.is_empty() {
             return Ok(drawings(file, format, papers));
         }
         Ok(Artifact::split(file, format, parts))
@@ -421,19 +428,25 @@ fn paper_kind(product: &Product) -> Result<PaperKind, ShapeId> {
     match product {
         Product::Shape(shape) => Err(*shape),
         Product::View(view) => Ok(PaperKind::View(view.clone())),
+        Product::Shade(shade) => Ok(PaperKind::Shade(shade.clone())),
         Product::Sheet(page) => Ok(PaperKind::Sheet(page.clone())),
     }
 }
 
 /// The error for an export whose format does not hold what it is given.
-fn unsuited(name: &str, format: Format, export: &ExportInfo) -> Diagnostic {
-    let (kind, help) = match format.is_drawing() {
-        true => {
-            ("solid", format!("draw it: `export \"x.{}\" = {name}.view()`", format.extension()))
+fn unsuited(name: &str, product: &Product, format: Format, export: &ExportInfo) -> Diagnostic {
+    let extension = format.extension();
+    let (kind, help) = match product {
+        Product::Shape(_) => {
+            let verb = if format.is_drawing() { "view" } else { "shade" };
+            ("solid", format!("draw it: `export \"x.{extension}\" = {name}.{verb}()`"))
         }
-        false => ("drawing", "drawings are written as .svg, .pdf or .dxf".to_string()),
+        Product::View(_) | Product::Sheet(_) => {
+            ("drawing", "drawings are written as .svg, .pdf or .dxf".to_string())
+        }
+        Product::Shade(_) => ("picture", "pictures are written as .png, .svg or .txt".to_string()),
     };
-    let words = format!("a {kind} cannot be written as .{}", format.extension());
+    let words = format!("a {kind} cannot be written as .{extension}");
     Diagnostic::error(Code::UnwritableFile, words).label(export.span, "").help(help)
 }
 

@@ -7,11 +7,13 @@ pub mod drawing;
 mod fingerprint;
 pub mod geometry;
 pub mod graph;
+pub mod halftone;
 pub mod node;
 mod stretched;
 
 pub use drawing::{CurveSpec, PageSpec, ViewSpec};
 pub use geometry::{Geometry, GeometryError, Measures};
 pub use graph::ShapeGraph;
+pub use halftone::ShadeSpec;
 pub use node::{Kind, Node, ShapeId};
 pub use stretched::Stretched;

@@ -11,6 +11,7 @@ mod floors;
 mod formats;
 mod golden;
 mod grammar;
+mod halftone;
 mod laws;
 mod made;
 mod openscad;

@@ -19,6 +19,7 @@ pub const TABLE: &[(&str, Native)] = &[
     ("constant.iso", |_, _| Ok(Value::Symbol(Symbol::Iso))),
     ("constant.dimetric", |_, _| Ok(Value::Symbol(Symbol::Dimetric))),
     ("constant.off", |_, _| Ok(Value::Symbol(Symbol::Off))),
+    ("constant.grey", |_, _| Ok(Value::Symbol(Symbol::Grey))),
     ("constant.dashed", |_, _| Ok(Value::Symbol(Symbol::Dashed))),
     ("constant.first_angle", |_, _| Ok(Value::Symbol(Symbol::FirstAngle))),
     ("constant.third_angle", |_, _| Ok(Value::Symbol(Symbol::ThirdAngle))),

@@ -16,6 +16,7 @@ mod placing;
 mod profiles;
 mod random;
 mod references;
+mod shades;
 mod solids;
 mod strings;
 mod surfaces;
@@ -59,6 +60,7 @@ pub fn find(name: &str) -> Option<Native> {
         profiles::TABLE,
         random::TABLE,
         references::TABLE,
+        shades::TABLE,
         solids::TABLE,
         strings::TABLE,
         surfaces::TABLE,

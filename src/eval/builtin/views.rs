@@ -70,15 +70,15 @@ const OPEN: &str =
 
 /// What a view shows.
 #[derive(Default)]
-struct Subjects {
-    shapes: Vec<ShapeId>,
-    profiles: Vec<ShapeId>,
-    surfaces: Vec<Arc<CurvedGrid>>,
-    curves: Vec<Arc<CurveSpec>>,
+pub(super) struct Subjects {
+    pub shapes: Vec<ShapeId>,
+    pub profiles: Vec<ShapeId>,
+    pub surfaces: Vec<Arc<CurvedGrid>>,
+    pub curves: Vec<Arc<CurveSpec>>,
 }
 
 /// What the first argument holds, lists opened at every level.
-fn subjects(evaluator: &mut Evaluator, args: &Args) -> Outcome<Subjects> {
+pub(super) fn subjects(evaluator: &mut Evaluator, args: &Args) -> Outcome<Subjects> {
     let mut found = Subjects::default();
     let mut pending = vec![args.value(0).clone()];
     while let Some(value) = pending.pop() {
@@ -115,7 +115,7 @@ pub(super) fn side(symbol: Symbol) -> Option<Side> {
     })
 }
 
-fn projection(args: &Args, target: DVec3) -> Outcome<Projection> {
+pub(super) fn projection(args: &Args, target: DVec3) -> Outcome<Projection> {
     if args.given(2) {
         return perspective(args, target);
     }
@@ -165,7 +165,7 @@ fn perspective(args: &Args, target: DVec3) -> Outcome<Projection> {
 }
 
 /// `[width, height]` about the target, or two corners.
-fn window(args: &Args) -> Outcome<Option<[DVec2; 2]>> {
+pub(super) fn window(args: &Args) -> Outcome<Option<[DVec2; 2]>> {
     if !args.given(5) {
         return Ok(None);
     }
@@ -222,7 +222,7 @@ fn method(args: &Args) -> Outcome<Method> {
 /// What a style may set beside its pens.
 const SETTINGS: [&str; 3] = ["crease", "hatch_pitch", "text_height"];
 
-fn style(args: &Args, i: usize) -> Outcome<StyleSpec> {
+pub(super) fn style(args: &Args, i: usize) -> Outcome<StyleSpec> {
     let mut style = StyleSpec::default();
     let Value::Record(record) = args.value(i) else { return Ok(style) };
     for (key, value) in record.fields() {

@@ -40,6 +40,7 @@ pub fn equal(a: &Value, b: &Value, steps: &mut u64) -> Result<bool, Incomparable
         (Value::Curve(a), Value::Curve(b)) => Ok(a == b),
         (Value::Surface(a), Value::Surface(b)) => Ok(a.grid() == b.grid()),
         (Value::Drawing(a), Value::Drawing(b)) => Ok(a == b),
+        (Value::Picture(a), Value::Picture(b)) => Ok(a == b),
         (Value::Page(a), Value::Page(b)) => Ok(a == b),
         (Value::Module(a), Value::Module(b)) => Ok(a == b),
         (Value::Function(a), Value::Function(b)) => Ok(Arc::ptr_eq(a, b)),

@@ -142,7 +142,9 @@ impl Evaluator<'_> {
             return Ok(Type::Solid.convert(&mut self.graph, value));
         }
         match (kind, &value) {
-            (OutputKind::View, Value::Drawing(_)) | (OutputKind::Sheet, Value::Page(_)) => {
+            (OutputKind::View, Value::Drawing(_))
+            | (OutputKind::Shade, Value::Picture(_))
+            | (OutputKind::Sheet, Value::Page(_)) => {
                 return Ok(value);
             }
             _ => {}
@@ -514,6 +516,7 @@ pub fn type_of(default: &Value) -> Type {
         Value::Curve(_) => Type::Curve,
         Value::Surface(_) => Type::Surface,
         Value::Drawing(_) => Type::Drawing,
+        Value::Picture(_) => Type::Picture,
         Value::Page(_) => Type::Page,
         Value::Symbol(_) | Value::Module(_) => Type::Any,
     }

@@ -16,7 +16,7 @@ pub use store::{List, Record, Surface, Text};
 pub use symbol::Symbol;
 
 use super::{dimension::Dimension, instance::InstanceId};
-use crate::shape::{CurveSpec, PageSpec, ShapeId, ViewSpec};
+use crate::shape::{CurveSpec, PageSpec, ShadeSpec, ShapeId, ViewSpec};
 
 /// A value of the language, 16 bytes.
 #[derive(Clone, Debug)]
@@ -47,6 +47,8 @@ pub enum Value {
     Surface(Arc<Surface>),
     /// A view of shapes.
     Drawing(Arc<ViewSpec>),
+    /// A picture of shapes in the light.
+    Picture(Arc<ShadeSpec>),
     /// A page with views on it.
     Page(Arc<PageSpec>),
     /// A file with its parameters set.
@@ -100,6 +102,7 @@ impl Value {
             Value::Curve(_) => "a curve".into(),
             Value::Surface(_) => "a surface".into(),
             Value::Drawing(_) => "a drawing".into(),
+            Value::Picture(_) => "a picture".into(),
             Value::Page(_) => "a page".into(),
             Value::Module(_) => "a module".into(),
         }

@@ -89,6 +89,7 @@ impl Printer<'_, '_> {
             Value::Curve(_) => self.f.write_str("<curve>"),
             Value::Surface(_) => self.f.write_str("<surface>"),
             Value::Drawing(_) => self.f.write_str("<drawing>"),
+            Value::Picture(_) => self.f.write_str("<picture>"),
             Value::Page(_) => self.f.write_str("<page>"),
             Value::Module(_) => self.f.write_str("<module>"),
         }

@@ -63,6 +63,8 @@ symbols! {
     Auto = "AUTO",
     /// Hidden lines by counting faces.
     Count = "COUNT",
+    /// Tones as pixels.
+    Grey = "GREY",
     /// Hidden lines by clipping.
     Clip = "CLIP",
     /// The paper size A0.

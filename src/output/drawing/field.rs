@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::{Camera, lattice::Plane};
-use crate::geom::Surface;
+use crate::geom::{Surface, surface::around_axis};
 
 /// A surface as its signed distance: 0 on it, gradient of length 1.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -45,15 +45,6 @@ impl Local {
     }
 }
 
-/// A vector as its part along an axis, the length of its part across, and the direction of that.
-fn around_axis(v: DVec3, axis: DVec3) -> (f64, f64, DVec3) {
-    let height = v.dot(axis);
-    let across = v - axis * height;
-    let radius = across.length();
-    let outwards = if radius > 0.0 { across / radius } else { axis.any_orthonormal_vector() };
-    (height, radius, outwards)
-}
-
 /// A curvature 1 / r that stays finite.
 fn inverse(r: f64) -> f64 {
     if r.abs() > f64::MIN_POSITIVE { 1.0 / r } else { 0.0 }
@@ -65,7 +56,7 @@ impl Field {
         match self {
             Field::Flat(plane) => Local::flat(plane.normal),
             Field::Round(surface) => {
-                let (_, normal) = slope(surface, p);
+                let (_, normal) = surface.slope(p);
                 Local { normal, bends: bends(surface, p, normal) }
             }
         }
@@ -76,35 +67,8 @@ impl Field {
     pub fn slope(&self, p: DVec3) -> (f64, DVec3) {
         match self {
             Field::Flat(plane) => (plane.distance(p), plane.normal),
-            Field::Round(surface) => slope(surface, p),
+            Field::Round(surface) => surface.slope(p),
         }
-    }
-}
-
-/// Signed distance and unit normal of a round surface at a point.
-fn slope(surface: &Surface, p: DVec3) -> (f64, DVec3) {
-    match *surface {
-        Surface::Cylinder { point, axis, radius } => {
-            let (_, r, out) = around_axis(p - point, axis);
-            (r - radius, out)
-        }
-        Surface::Cone { apex, axis, slope } => {
-            let (h, r, out) = around_axis(p - apex, axis);
-            let secant = (1.0 + slope * slope).sqrt();
-            ((r - slope * h) / secant, (out - axis * slope) / secant)
-        }
-        Surface::Sphere { center, radius } => {
-            let v = p - center;
-            let r = v.length();
-            (r - radius, if r > 0.0 { v / r } else { DVec3::Z })
-        }
-        Surface::Torus { center, axis, major, minor } => {
-            let (h, r, out) = around_axis(p - center, axis);
-            let tube = out * (r - major) + axis * h;
-            let q = tube.length();
-            (q - minor, if q > 0.0 { tube / q } else { out })
-        }
-        Surface::Plane | Surface::Facets => (0.0, DVec3::Z),
     }
 }
 

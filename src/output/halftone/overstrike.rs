@@ -1,0 +1,154 @@
+//! Line-printer pictures: each cell of a text is struck up to three times, so that some twenty levels of ink come of
+//! the signs of a typewriter.
+//!
+//! # Paper
+//! METHODS 3.4: the paper printed its pictures in 20 levels by overstriking.
+//!
+//! # Departures
+//! The paper's levels are a table for one printer. Here the ink of every strike is measured on the outlines of a font,
+//! and the levels are those whose ink is nearest to equal steps.
+
+use glam::{DVec2, dvec2};
+
+use super::{
+    average::Average,
+    ink::{Ink, Mark},
+    picture::Picture,
+};
+use crate::{
+    geom::{
+        Contour,
+        overlay::{Fill, Rule, overlay},
+    },
+    output::sheet::Lettering,
+};
+
+/// A cell of a line printer: ten to the inch across, six to the inch down, mm.
+const CELL: DVec2 = dvec2(25.4 / 10.0, 25.4 / 6.0);
+
+/// Height of capitals, and of the base line above the cell's lower edge, mm.
+const HEIGHT: f64 = 2.6;
+const BASE: f64 = 1.0;
+
+/// The signs that are struck: from little ink to much, of different shapes.
+const SIGNS: &str = ".,-:;=+*/)(!ITXHOANMWB8#$%&@0";
+
+/// Strikes to a cell at most.
+const STRIKES: usize = 3;
+
+/// Levels at most: more than strikes differ by.
+pub const LEVELS: usize = 40;
+
+/// A text that is a picture when its strikes are printed over each other.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Overstrike {
+    /// Of each line what is struck first, second and third.
+    pub lines: Vec<[String; STRIKES]>,
+    /// The signs as ink.
+    pub ink: Ink,
+}
+
+/// Signs struck over each other, and how much of a cell they cover.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Level {
+    /// The signs.
+    pub signs: Vec<char>,
+    /// The part of the cell that is black.
+    pub ink: f64,
+}
+
+/// What a sign covers of its cell, with its lower left corner at the origin.
+struct Sign {
+    sign: char,
+    outlines: Vec<Contour>,
+}
+
+fn signs(lettering: &dyn Lettering) -> Vec<Sign> {
+    let sign = |sign: char| {
+        let (outlines, width) = lettering.outlines(&sign.to_string(), HEIGHT)?;
+        let shift = dvec2((CELL.x - width) / 2.0, BASE);
+        let moved =
+            |points: Vec<DVec2>| Contour::polygon(points.into_iter().map(|p| p + shift).collect());
+        Some(Sign { sign, outlines: outlines.into_iter().map(moved).collect() })
+    };
+    SIGNS.chars().filter_map(sign).collect()
+}
+
+/// So many levels from white to the most ink there is, in nearly equal steps of ink; fewer if strikes do not differ
+/// by that many.
+pub fn levels(lettering: &dyn Lettering, count: usize) -> Vec<Level> {
+    levels_of(&signs(lettering), count)
+}
+
+fn levels_of(signs: &[Sign], count: usize) -> Vec<Level> {
+    let ink = |chosen: &[usize]| {
+        let contours = chosen.iter().flat_map(|&i| &signs[i].outlines);
+        overlay(contours, [], Rule::Union, Fill::NonZero).area() / CELL.element_product()
+    };
+    let mut all = vec![(vec![], 0.0)];
+    for i in 0..signs.len() {
+        all.push((vec![i], ink(&[i])));
+        for j in 0..i {
+            all.push((vec![j, i], ink(&[j, i])));
+            all.extend((0..j).map(|k| (vec![k, j, i], ink(&[k, j, i]))));
+        }
+    }
+    // Of strikes with as much ink those with fewer signs come first.
+    all.sort_by(|a: &(Vec<usize>, f64), b| {
+        a.1.total_cmp(&b.1).then(a.0.len().cmp(&b.0.len())).then(a.0.cmp(&b.0))
+    });
+    let most = all.last().map_or(0.0, |last| last.1);
+    let mut levels: Vec<Level> = vec![];
+    for step in 0..count {
+        let wanted = most * step as f64 / (count.max(2) - 1) as f64;
+        let reached = levels.last().map_or(-1.0, |level| level.ink);
+        let above = all.iter().filter(|strike| strike.1 > reached);
+        let nearest = above.min_by(|a, b| (a.1 - wanted).abs().total_cmp(&(b.1 - wanted).abs()));
+        if let Some((chosen, ink)) = nearest {
+            let signs = chosen.iter().map(|&i| signs[i].sign).collect();
+            levels.push(Level { signs, ink: *ink });
+        }
+    }
+    levels
+}
+
+/// A picture in so many levels of struck signs.
+pub fn overstrike(picture: &Picture, lettering: &dyn Lettering, count: usize) -> Overstrike {
+    let signs = signs(lettering);
+    let levels = levels_of(&signs, count.clamp(2, LEVELS));
+    let tones = Average::of(picture);
+    let window = picture.frame.window;
+    let size = ((window.max - window.min) / CELL).ceil();
+    let mut text = Overstrike { lines: vec![], ink: Ink { frame: picture.frame, marks: vec![] } };
+    for row in 0..size.y as u32 {
+        let mut line = <[String; STRIKES]>::default();
+        for column in 0..size.x as u32 {
+            let corner = window.min.with_y(window.max.y)
+                + dvec2(f64::from(column), -f64::from(row + 1)) * CELL;
+            let dark = 1.0 - tones.over(corner + CELL / 2.0, CELL);
+            let level = &levels[(dark * (levels.len() - 1) as f64).round() as usize];
+            for (strike, line) in line.iter_mut().enumerate() {
+                line.push(level.signs.get(strike).copied().unwrap_or(' '));
+            }
+            for sign in signs.iter().filter(|s| level.signs.contains(&s.sign)) {
+                let placed =
+                    |c: &Contour| Mark::Area(c.points.iter().map(|p| *p + corner).collect());
+                text.ink.marks.extend(sign.outlines.iter().map(placed));
+            }
+        }
+        text.lines.push(line.map(|strike| strike.trim_end().to_string()));
+    }
+    text
+}
+
+impl Overstrike {
+    /// The text for a printer that goes back to the start of the line at a carriage return.
+    pub fn text(&self) -> String {
+        let line = |strikes: &[String; STRIKES]| {
+            let struck: Vec<&str> =
+                strikes.iter().map(String::as_str).filter(|s| !s.is_empty()).collect();
+            struck.join("\r") + "\n"
+        };
+        self.lines.iter().map(line).collect()
+    }
+}
