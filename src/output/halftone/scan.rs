@@ -80,6 +80,8 @@ struct Band<'a> {
     rows: std::ops::Range<usize>,
     lines: Vec<Vec<Crossing>>,
     pixels: Vec<[f32; 3]>,
+    /// The last colour that each pixel had of a bent plate, with the plate and its suns: that of the pixel's middle.
+    colors: Vec<(u32, u32, [f32; 3])>,
     spans: Vec<Span>,
     active: Vec<Span>,
 }
@@ -89,7 +91,8 @@ impl<'a> Band<'a> {
         let width = frame.size[0] as usize;
         let lines = vec![vec![]; rows.len() * LINES];
         let pixels = vec![[1.0; 3]; rows.len() * width];
-        Band { plates, width, rows, lines, pixels, spans: vec![], active: vec![] }
+        let colors = vec![(u32::MAX, 0, [1.0; 3]); pixels.len()];
+        Band { plates, width, rows, lines, pixels, colors, spans: vec![], active: vec![] }
     }
 
     fn make(&mut self, list: &[u32], paint: Paint<'_>) {
@@ -148,7 +151,7 @@ impl<'a> Band<'a> {
             }
             let to = active.iter().map(|span| span.to).fold(start, f64::min);
             let (seen, to) = nearest(&active, x, to.min(self.width as f64));
-            self.paint(&seen, crossings, (x, to), dvec2(0.0, y), row, paint);
+            self.paint(&seen, crossings, (x, to), row, paint);
             x = to;
             if x >= self.width as f64 {
                 break;
@@ -181,7 +184,6 @@ impl<'a> Band<'a> {
         span: &Span,
         crossings: &[Crossing],
         (from, to): (f64, f64),
-        line: DVec2,
         row: usize,
         paint: Paint<'_>,
     ) {
@@ -192,29 +194,39 @@ impl<'a> Band<'a> {
             let past = others.iter().map(|c| c.x).filter(|x| *x > at);
             let end = past.fold(to, f64::min);
             let suns = suns(plate, others, (at + end) / 2.0);
-            self.fill(plate, (at, end), line.y, row, suns, paint);
+            self.fill((span.plate, suns), (at, end), row, paint);
             at = end;
         }
     }
 
-    /// Adds to pixels what a plate covers of them.
+    /// Adds to pixels what a plate, with some suns on it, covers of them.
     fn fill(
         &mut self,
-        plate: &Plate<'_>,
+        (number, suns): (u32, u32),
         (from, to): (f64, f64),
-        y: f64,
         row: usize,
-        suns: u32,
         paint: Paint<'_>,
     ) {
+        let plate = &self.plates[number as usize];
         let last = (to.ceil() as usize).min(self.width);
-        let flat = plate.is_flat().then(|| paint(plate, dvec2((from + to) / 2.0, y), suns));
+        let middle =
+            |column: usize| dvec2(column as f64 + 0.5, (self.rows.start + row) as f64 + 0.5);
+        let flat = plate.is_flat().then(|| paint(plate, middle(from as usize), suns));
         for column in from as usize..last {
+            let place = row * self.width + column;
+            let known = self.colors[place];
+            let color = match flat {
+                Some(color) => color,
+                None if (known.0, known.1) == (number, suns) => known.2,
+                None => {
+                    let color = paint(plate, middle(column), suns);
+                    self.colors[place] = (number, suns, color);
+                    color
+                }
+            };
             let (low, high) = (from.max(column as f64), to.min(column as f64 + 1.0));
-            let color = flat.unwrap_or_else(|| paint(plate, dvec2((low + high) / 2.0, y), suns));
             let share = ((high - low) / LINES as f64) as f32;
-            let pixel = &mut self.pixels[row * self.width + column];
-            for (part, color) in pixel.iter_mut().zip(color) {
+            for (part, color) in self.pixels[place].iter_mut().zip(color) {
                 *part += (color - 1.0) * share;
             }
         }
