@@ -14,7 +14,11 @@ use std::{
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
 use katachi::{
-    geom::{Origin, PolyMesh, Surface, triangulate::triangulate},
+    geom::{
+        Origin, PolyMesh, Surface,
+        triangulate::triangulate,
+        trig::{cos_deg, sin_deg},
+    },
     kernel::brep::primitive::{cuboid, sphere},
     output::{
         drawing::{Camera, Scene, Window},
@@ -142,8 +146,6 @@ fn triangles() -> Subject {
     Subject { meshes, eye, target, half: dvec2(64.0, 48.0), width: 2048, screen: None }
 }
 
-const TURN: f64 = std::f64::consts::TAU;
-
 /// The city in twenty thousand dots.
 fn dots() -> Subject {
     let screen = Some(Screen::Dots { pitch: 1.2, angle: 45.0 });
@@ -155,13 +157,14 @@ fn povray(subject: &Subject) -> String {
     let vector = |p: DVec3| format!("<{},{},{}>", p.x, p.z, p.y);
     let far = subject.target + SUN.normalize() * 1e5;
     let away = subject.eye.distance(subject.target);
-    let angle = 2.0 * (subject.half.x / away).atan().to_degrees();
+    // Half the width of a picture as long as the eye is away is half a unit of POV-Ray's `right`.
+    let right = 2.0 * subject.half.x / away;
     let mut text = format!(
         "global_settings {{ assumed_gamma 1 }}\nbackground {{ rgb 1 }}\ncamera {{ perspective location {} \
-         right x*{} up y sky y angle {angle} look_at {} }}\nlight_source {{ {} rgb 1 parallel point_at {} }}\n\
+         right x*{right} up y*{} sky y direction z look_at {} }}\nlight_source {{ {} rgb 1 parallel point_at {} }}\n\
          plane {{ y, 0 pigment {{ rgb 1 }} finish {{ ambient 0.2 diffuse 0.8 }} }}\n",
         vector(subject.eye),
-        subject.half.x / subject.half.y,
+        2.0 * subject.half.y / away,
         vector(subject.target),
         vector(far),
         vector(subject.target),

@@ -141,7 +141,7 @@ fn ground(args: &Args, suns: &[SunSpec]) -> Outcome<Option<f64>> {
 
 fn no_shadow(args: &Args, sun: &SunSpec) -> Outcome<Option<f64>> {
     let how = if sun.toward.normalize().z < -HORIZON { "from below" } else { "parallel to" };
-    let d = point_value(sun.toward);
+    let d = Value::list(sun.toward.to_array().map(Value::bare).to_vec());
     let words = format!("the light from {d} comes {how} the ground; it casts no shadow there");
     let error = Diagnostic::error(Code::Degenerate, words).label(args.span(6), "");
     let help =

@@ -57,7 +57,7 @@ impl Frame {
             return Err(FrameError::Empty { width, height, dpi });
         }
         let all = count.x * count.y;
-        if !(all <= PIXELS as f64) {
+        if all > PIXELS as f64 {
             return Err(FrameError::TooLarge(all as u64));
         }
         let (middle, half) = ((window.min + window.max) / 2.0, count * (INCH / dpi / 2.0));

@@ -56,7 +56,7 @@ pub enum Screen {
 #[derive(Clone, Copy, PartialEq, Debug, Error)]
 pub enum ScreenError {
     /// Finer than the pixels that it is made of.
-    #[error("the pitch of the screen is {pitch} mm, below that of the pixels, {pixel} mm")]
+    #[error("the pitch of the screen is {pitch} mm, below that of the pixels, {pixel:.3} mm")]
     BelowPixels {
         /// The screen's.
         pitch: f64,
