@@ -126,6 +126,21 @@ fn a_ring_that_touches_itself_along_an_edge() {
     }
 }
 
+/// The pocket has an edge in a side of the plate. The blocks at the other end make a crowd, so that there are
+/// stages: what they leave must be as sound where it touches itself as what one arrangement leaves.
+#[test]
+fn a_pocket_that_touches_a_side_beside_a_crowd() {
+    let corners = [(0.0, 2.0), (1.0, 1.0), (1.0, 3.0)].map(DVec2::from);
+    let step = |from: f64, to: f64, high: f64| block([from, 0.0, 0.0], [to, 4.0, high]);
+    let parts = [(0.0, 12.0, 2.0), (6.0, 9.0, 3.0), (7.0, 10.0, 4.0), (8.0, 11.0, 5.0)];
+    let mut parts: Vec<Tree> = parts.map(|(from, to, high)| step(from, to, high)).into();
+    parts.push(step(8.0, 12.0, 6.0));
+    for (low, deep) in [(-1.0, 1.0), (0.0, 1.5)] {
+        let pocket = leaf(prism(&corners, low, deep, Surface::Plane));
+        check(less(vec![union(parts.clone()), pocket]), 172.0 - deep, 48, 2);
+    }
+}
+
 #[test]
 fn flush_notch() {
     let a = block([0.0; 3], [3.0; 3]);

@@ -78,6 +78,7 @@ mod space;
 mod stage;
 mod staged;
 mod union_find;
+mod whole;
 
 use std::sync::Arc;
 
