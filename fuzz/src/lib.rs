@@ -1,9 +1,11 @@
 //! Construction trees from bytes, for fuzzing: every string of bytes is a tree, short strings are small trees,
 //! and each tree can be written down as a model.
 //!
+//! libFuzzer is built by a C++ compiler. Stable Rust does, as long as no sanitizer is asked for:
+//!
 //! ```sh
-//! cargo +nightly fuzz run trees               # until something is wrong
-//! cargo +nightly fuzz tmin trees <artifact>   # shrink it
+//! cargo fuzz run -s none trees                # until something is wrong
+//! cargo fuzz tmin -s none trees <artifact>    # shrink it
 //! cargo run --release show <artifact>         # print it as a model for tests/regressions
 //! cargo run --release try 1 100000            # random bytes from so many seeds, without coverage
 //! ```

@@ -167,8 +167,8 @@ impl<'a> Hull<'a> {
         self.carries(other, shared) || other.carries(self, shared)
     }
 
-    /// Whether another face stands on this one at one or two shared corners, so that they cannot cross: it has
-    /// all other corners at heights of at least h on one side.
+    /// Whether another face stands on this one at a shared corner or along an edge between two, so that they
+    /// cannot cross: it has all other corners at heights of at least h on one side.
     ///
     /// This face is within m of its plane, and all is of size R. So the other one can cross it only within
     /// 2 m R / h of what they share. Triangles of this face that do not have that are at least the clearance c
@@ -176,7 +176,15 @@ impl<'a> Hull<'a> {
     /// most; so the other face's triangle is there at a share of at most about s m R / (h c) of its free
     /// corner, which takes it no more than that times R away from the shared edge; but this face's triangle is
     /// by s c c / R away from it. So they do not meet if h c c c > 2 m R R R, with room for the rest.
+    ///
+    /// A diagonal of this face between the two shared corners will not do: triangles that do not have it may lie
+    /// on both sides of it.
     fn carries(&self, other: &Hull<'_>, shared: &[u32]) -> bool {
+        if let &[a, b] = shared
+            && !self.has_edge(a, b)
+        {
+            return false;
+        }
         let (slope, base) = (Slope::across(self.normal), self.at(shared[0]));
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for &corner in other.corners.iter().filter(|c| !shared.contains(c)) {
@@ -186,6 +194,12 @@ impl<'a> Hull<'a> {
         let height = low.max(-high);
         let reach = self.reach.max(other.reach);
         height * self.clearance.powi(3) > ROOM * self.flatness * reach.powi(3)
+    }
+
+    /// Whether two of its corners are neighbours.
+    fn has_edge(&self, a: u32, b: u32) -> bool {
+        let next = self.corners.iter().cycle().skip(1);
+        self.corners.iter().zip(next).any(|(&c, &d)| (c, d) == (a, b) || (d, c) == (a, b))
     }
 
     /// Whether all of the other face is farther along a direction, or all of it is less far.
@@ -257,6 +271,27 @@ mod tests {
                 assert!(a.is_apart(b) && b.is_apart(a), "{:?} {:?}", a.corners, b.corners);
             }
         }
+    }
+
+    /// A quadrilateral with a triangle on its diagonal: rounding decides whether the edge is above it.
+    #[test]
+    fn a_face_does_not_stand_on_a_diagonal() {
+        let corners = [
+            dvec3(0., 0., 0.),
+            dvec3(1., 0., 0.),
+            dvec3(1., 1., 0.),
+            dvec3(0., 1., 1e-16),
+            dvec3(0.5, 0.5, 1.),
+        ];
+        let mut mesh = PolyMesh::with_points(corners.to_vec());
+        let (plane, origin) = (mesh.add_plane(), mesh.add_origin(Origin::of(Surface::Plane)));
+        mesh.push_face(&[[0, 1, 2, 3]], plane, origin);
+        mesh.push_face(&[[0, 2, 4]], plane, origin);
+        mesh.push_face(&[[0, 1, 4]], plane, origin);
+        let [floor, across, beside] =
+            [0, 1, 2].map(|face| Hull::of(&mesh, mesh.face(face)).expect("a hull"));
+        assert!(!floor.is_apart(&across) && !across.is_apart(&floor));
+        assert!(floor.is_apart(&beside) && beside.is_apart(&floor));
     }
 
     #[test]

@@ -126,6 +126,37 @@ fn a_ring_that_touches_itself_along_an_edge() {
     }
 }
 
+/// The pocket has an edge in a side of the plate. The blocks at the other end make a crowd, so that there are
+/// stages: what they leave must be as sound where it touches itself as what one arrangement leaves.
+#[test]
+fn a_pocket_that_touches_a_side_beside_a_crowd() {
+    let corners = [(0.0, 2.0), (1.0, 1.0), (1.0, 3.0)].map(DVec2::from);
+    let step = |from: f64, to: f64, high: f64| block([from, 0.0, 0.0], [to, 4.0, high]);
+    let parts = [(0.0, 12.0, 2.0), (6.0, 9.0, 3.0), (7.0, 10.0, 4.0), (8.0, 11.0, 5.0)];
+    let mut parts: Vec<Tree> = parts.map(|(from, to, high)| step(from, to, high)).into();
+    parts.push(step(8.0, 12.0, 6.0));
+    for (low, deep) in [(-1.0, 1.0), (0.0, 1.5)] {
+        let pocket = leaf(prism(&corners, low, deep, Surface::Plane));
+        check(less(vec![union(parts.clone()), pocket]), 172.0 - deep, 48, 2);
+    }
+}
+
+/// Their faces cross at so small angles that snapping makes what lies between them thinner than doubles can tell.
+#[test]
+fn boxes_nearly_alike_about_a_corner() {
+    let cube = || block([0.0; 3], [1.0; 3]);
+    for turn in [[1e-6; 3], [1e-6, -1e-6, 3e-6], [23.0, 1e-6, 1e-6], [1e-6, 17.0, 1e-6]] {
+        let both = || vec![turned(turn, cube()), cube()];
+        let [one, other, common] =
+            [union(both()), less(both()), Tree::Intersection(both())].map(|tree| {
+                let solid = solid(&tree);
+                assert_eq!(soundness::fault(&solid), None);
+                volume(&solid)
+            });
+        assert!((one + common - 2.0).abs() < 1e-5 && (other + common - 1.0).abs() < 1e-5);
+    }
+}
+
 #[test]
 fn flush_notch() {
     let a = block([0.0; 3], [3.0; 3]);
@@ -197,6 +228,28 @@ fn cylinders_end_to_end() {
     check(union(vec![rod(0.0, 6.0), rod(3.0, 9.0)]), length, triangles, 2);
     let stack = union((0..9).map(|i| moved([0.0, 0.0, f64::from(i)], rod(0.0, 1.0))).collect());
     check(stack, length, triangles, 2);
+}
+
+/// Parts that are flush with each other but stand otherwise than the rest are one part in any frame.
+#[test]
+fn turned_cylinders_and_bars_end_to_end_among_others() {
+    let rod = |low: f64, high: f64| leaf(cylinder([2.0, 1.0], 1.5, low, high, 24));
+    let bar = |low: f64, high: f64| block([-1.0, -1.0, low], [1.0, 1.0, high]);
+    let rest =
+        [[4.0, 2.0, 1.0], [2.0, 4.0, 1.0], [2.0, 2.0, 3.0]].map(|size| block([0.0; 3], size));
+    let measured = |parts: Vec<Tree>, turn: [f64; 3]| {
+        let turned = parts.into_iter().map(|part| turned(turn, part));
+        let solid = solid(&union(rest.clone().into_iter().chain(turned).collect()));
+        assert_eq!(soundness::fault(&solid), None);
+        (solid.mesh().triangle_count(), volume(&solid))
+    };
+    for turn in TURNS {
+        let one = measured(vec![rod(-9.0, 9.0)], turn);
+        assert_eq!(measured(vec![rod(-9.0, 4.0), rod(4.0, 9.0)], turn), one);
+        assert_eq!(measured(vec![rod(-9.0, 6.0), rod(3.0, 9.0)], turn), one);
+        let one = measured(vec![bar(-9.0, 9.0)], turn);
+        assert_eq!(measured(vec![bar(-9.0, 5.0), bar(5.0, 9.0)], turn), one);
+    }
 }
 
 #[test]

@@ -98,7 +98,7 @@ pub(super) fn complex(
             facets.find_supports(facet, space);
             members.push((meetings.coplanar.find(facet), facet));
         } else {
-            complex.add_whole(facet, facets);
+            complex.add_whole(facet, facets, space);
         }
     }
     starts.push(end);

@@ -253,11 +253,13 @@ fn is_pinched(loops: &[Vec<u32>]) -> bool {
     corners.windows(2).any(|pair| pair[0] == pair[1])
 }
 
-/// Adds a pinched polygon as triangles: a face of a mesh is around a corner but once.
+/// Adds a pinched polygon as triangles: a face of a mesh is around a corner but once. Rounding may have left so
+/// little of it that there are triangles with one corner twice; without them the others fit together as well.
 fn add_triangles(loops: &[Vec<u32>], plane: u32, origin: u32, mesh: &mut PolyMesh) {
     let loops: Vec<&[u32]> = loops.iter().map(Vec::as_slice).collect();
     let mut triangles = vec![];
     triangulate_face(&mesh.points, &loops, &mut triangles);
+    triangles.retain(|[a, b, c]| a != b && b != c && c != a);
     triangles.iter().for_each(|corners| mesh.push_face(&[corners], plane, origin));
 }
 

@@ -92,15 +92,6 @@ impl Complex {
         self.loop_start = end;
     }
 
-    /// Adds a facet that nothing touches.
-    pub fn add_whole(&mut self, facet: u32, facets: &Facets) {
-        self.begin_cell(NONE, [(facet, 1)].into_iter());
-        for (corners, supports) in facets.supported_loops(facet) {
-            corners.iter().zip(supports).for_each(|(&corner, &s)| self.push_half(corner, s));
-            self.end_loop();
-        }
-    }
-
     /// Adds cells without a boundary that stand for patches, each given by a facet of its operand.
     pub fn add_patches(&mut self, owners: impl Iterator<Item = u32>) {
         self.first_patch = self.cells.len() as u32;

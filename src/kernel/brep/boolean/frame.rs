@@ -4,13 +4,17 @@
 //! helps exactness: the operation is evaluated in the frame whose linear part most of its leaves
 //! share, where their faces are what the modeller wrote, and the result is placed afterwards.
 //! Nested operations that stand to that frame by a translation, a quarter turn or an axis mirror
-//! join the same arrangement; one that stands otherwise is evaluated first, in its own frame.
+//! join the same arrangement; one that stands otherwise is evaluated first, in its own frame. So are
+//! parts that stand alike, but otherwise than the frame, and touch: where they are flush their faces
+//! meet exactly there, and here snapping would bend them apart.
 
 use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 
-use super::{BooleanError, Evaluated, Tree, evaluate_operation, expression::Expression};
+use rustc_hash::FxHashMap;
+
+use super::{BooleanError, Evaluated, Tree, clusters, evaluate_operation, expression::Expression};
 use crate::{geom::Placement, kernel::brep::Polyhedron};
 
 /// How far a relative linear part, a product of a matrix and an inverse, may be from a signed axis
@@ -124,10 +128,58 @@ impl Walk {
         Ok(match tree {
             Tree::Leaf(solid) => self.leaf(solid.clone(), at),
             Tree::Placed(inner, child) => self.part(child, &at.after(inner))?,
-            Tree::Union(parts) => Expression::Union(self.parts(parts, at)?),
+            Tree::Union(parts) => Expression::Union(self.any(parts, at)?),
             Tree::Intersection(parts) => Expression::Intersection(self.parts(parts, at)?),
-            Tree::Difference(parts) => Expression::Difference(self.parts(parts, at)?),
+            Tree::Difference(parts) => {
+                let (first, rest) = parts.split_at(parts.len().min(1));
+                let mut all = self.parts(first, at)?;
+                all.extend(self.any(rest, at)?);
+                Expression::Difference(all)
+            }
         })
+    }
+
+    /// Parts that are united or subtracted: those that stand alike and touch are united first.
+    fn any(&mut self, parts: &[Tree], at: &Placement) -> Result<Vec<Expression>, BooleanError> {
+        let mut found = Vec::with_capacity(parts.len());
+        for alike in self.alike(parts, at) {
+            if let [part] = alike[..] {
+                found.push(self.part(part, at)?);
+                continue;
+            }
+            let together = Tree::Union(alike.into_iter().cloned().collect());
+            let touching = clusters::apart(&together, &inverse(&together));
+            for group in touching.unwrap_or_else(|| vec![together]) {
+                found.push(match group {
+                    Tree::Leaf(_) | Tree::Placed(..) => self.part(&group, at)?,
+                    operation => self.evaluated(&operation, at)?,
+                });
+            }
+        }
+        Ok(found)
+    }
+
+    /// The parts, those together that stand alike but otherwise than the frame of evaluation, unless all do.
+    fn alike<'t>(&self, parts: &'t [Tree], at: &Placement) -> Vec<Vec<&'t Tree>> {
+        let mut groups: Vec<Vec<&Tree>> = vec![];
+        let mut known: FxHashMap<[u64; 9], usize> = FxHashMap::default();
+        for part in parts {
+            let (mut stands, mut inner) = (*at, part);
+            while let Tree::Placed(placement, child) = inner {
+                (stands, inner) = (stands.after(placement), child);
+            }
+            let linear = self.local(&stands).linear();
+            let number = groups.len();
+            let number = match is_permutation(&linear) {
+                true => number,
+                false => *known.entry(linear.to_cols_array().map(f64::to_bits)).or_insert(number),
+            };
+            match groups.get_mut(number) {
+                Some(group) => group.push(part),
+                None => groups.push(vec![part]),
+            }
+        }
+        if groups.len() == 1 { parts.iter().map(|part| vec![part]).collect() } else { groups }
     }
 
     fn parts(&mut self, parts: &[Tree], at: &Placement) -> Result<Vec<Expression>, BooleanError> {
@@ -140,6 +192,11 @@ impl Walk {
         if whole || keeps_lattice(&self.local(at)) {
             return deeper(|| self.operation(tree, at));
         }
+        self.evaluated(tree, at)
+    }
+
+    /// A part that stands at `at`, evaluated on its own.
+    fn evaluated(&mut self, tree: &Tree, at: &Placement) -> Result<Expression, BooleanError> {
         let evaluated = deeper(|| evaluate_operation(tree, &Placement::IDENTITY))?;
         self.snap = self.snap.max(evaluated.snap * stretch(&self.outer.after(at)));
         Ok(self.leaf(Arc::new(evaluated.solid), at))

@@ -50,6 +50,13 @@ const CROSS_ERROR: f64 = 8.0 * f64::EPSILON;
 const DIRECTION_ERROR: f64 = 4.0 * NEAR;
 
 impl Graph {
+    /// An empty arrangement of a plane.
+    pub fn of(plane: u32, space: &Space) -> Graph {
+        let mut graph = Graph { plane, ..Graph::default() };
+        graph.start(space);
+        graph
+    }
+
     /// Begins the arrangement of the plane that is set.
     pub fn start(&mut self, space: &Space) {
         let normal = space.plane(self.plane).normal;

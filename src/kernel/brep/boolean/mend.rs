@@ -21,7 +21,7 @@ use crate::{
 
 /// By how many grades the lattice is made coarser, one round after the other: features of a few steps become one
 /// step, or none. The last is 40 times as coarse as the first, a ten-millionth of the size.
-const GRADES: [u32; 5] = [0, 0, 1, 3, 5];
+pub(super) const GRADES: [u32; 5] = [0, 0, 1, 3, 5];
 
 /// How far the boundary may move by that, in steps: corners move by less than one, corners that are cut anew
 /// where faces meet at small angles by a few.

@@ -81,6 +81,7 @@ mod space;
 mod stage;
 mod staged;
 mod union_find;
+mod whole;
 
 use std::sync::Arc;
 
@@ -211,12 +212,17 @@ fn evaluate_operation(tree: &Tree, outer: &Placement) -> Result<Evaluated, Boole
     if let Some(groups) = clusters::apart(tree, &frame::inverse(tree)) {
         return side_by_side(&groups, outer);
     }
-    let plan = frame::plan(tree, outer)?;
-    let found = match arranged(&plan, true, true)? {
-        Some(found) => found,
-        // A leaf that crosses itself, as it came or after snapping: compare all facets with all.
-        None => arranged(&plan, false, false)?.ok_or(BooleanError::NotClosed)?,
-    };
+    let mut plan = frame::plan(tree, outer)?;
+    let mut found = arranged(&plan, true, true)?;
+    // A leaf that crosses itself, as it came or after snapping: compare all facets with all. If what they make
+    // can still not be rounded to a closed surface, leave out what is finer than a coarser lattice.
+    let mut grades =
+        [None].into_iter().chain(mend::GRADES.into_iter().filter(|&grades| grades > 0).map(Some));
+    while let (None, Some(mending)) = (&found, grades.next()) {
+        plan.mending = mending;
+        found = arranged(&plan, false, false)?;
+    }
+    let found = found.ok_or(BooleanError::NotClosed)?;
     Ok(match (found.crossing, lost(&found.solid)) {
         (Some(_), None) => mend::mended(&plan, found),
         (crossing, lost) => Evaluated { crossing: crossing.or(lost), ..found },

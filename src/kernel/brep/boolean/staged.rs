@@ -137,7 +137,7 @@ fn assembled(
     space: &mut Space,
 ) -> Option<(Polyhedron, Option<DVec3>)> {
     let mut complex = Complex::default();
-    (0..facets.list().len() as u32).for_each(|facet| complex.add_whole(facet, facets));
+    (0..facets.list().len() as u32).for_each(|facet| complex.add_whole(facet, facets, space));
     complex.add_patches(std::iter::empty());
     complex.finish(space.point_count());
     let borders = Borders(vec![]);
