@@ -125,10 +125,10 @@ fn hospital() -> Subject {
 fn triangles() -> Subject {
     let (around, tube) = (500u32, 100u32);
     let at = |i: u32, j: u32| {
-        let (a, b) =
-            (f64::from(i) / f64::from(around) * TURN, f64::from(j) / f64::from(tube) * TURN);
-        let r = 30.0 + (9.0 + (5.0 * a).sin() * 2.0) * b.cos();
-        dvec3(r * a.cos(), r * a.sin(), 15.0 + 9.0 * b.sin() + 4.0 * (3.0 * a).sin())
+        let [a, b] = [(i, around), (j, tube)].map(|(k, n)| f64::from(k) / f64::from(n) * 360.0);
+        let r = 30.0 + (9.0 + sin_deg(5.0 * a) * 2.0) * cos_deg(b);
+        let height = 15.0 + 9.0 * sin_deg(b) + 4.0 * sin_deg(3.0 * a);
+        dvec3(r * cos_deg(a), r * sin_deg(a), height)
     };
     let points = (0..around).flat_map(|i| (0..tube).map(move |j| at(i, j))).collect();
     let mut mesh = PolyMesh::with_points(points);
