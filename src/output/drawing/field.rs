@@ -10,7 +10,7 @@ use crate::geom::Surface;
 pub enum Field {
     /// A plane.
     Flat(Plane),
-    /// A round surface: not [`Surface::Plane`] and not [`Surface::Facets`].
+    /// A round surface, which has a closed form and is no plane.
     Round(Surface),
 }
 
@@ -60,6 +60,14 @@ fn inverse(r: f64) -> f64 {
 }
 
 impl Field {
+    /// Where a cone ends in a point, which is turned every way.
+    pub fn apex(&self) -> Option<DVec3> {
+        match *self {
+            Field::Round(Surface::Cone { apex, .. }) => Some(apex),
+            _ => None,
+        }
+    }
+
     /// The field at a point.
     pub fn local(&self, p: DVec3) -> Local {
         match self {
@@ -104,7 +112,7 @@ fn slope(surface: &Surface, p: DVec3) -> (f64, DVec3) {
             let q = tube.length();
             (q - minor, if q > 0.0 { tube / q } else { out })
         }
-        Surface::Plane | Surface::Facets => (0.0, DVec3::Z),
+        Surface::Plane | Surface::Smooth | Surface::Facets => (0.0, DVec3::Z),
     }
 }
 
@@ -129,7 +137,7 @@ fn bends(surface: &Surface, p: DVec3, normal: DVec3) -> [(DVec3, f64); 2] {
             let (along, q) = (axis.cross(out), (out * (r - major) + axis * h).length());
             [(along, normal.dot(out) * inverse(r)), (along.cross(normal), inverse(q))]
         }
-        Surface::Plane | Surface::Facets => [none; 2],
+        Surface::Plane | Surface::Smooth | Surface::Facets => [none; 2],
     }
 }
 
