@@ -3,6 +3,7 @@
 pub mod bounds;
 pub mod bvh;
 pub mod curved_grid;
+pub mod development;
 pub mod flatten;
 pub mod mesh;
 pub mod nearest;
@@ -22,6 +23,7 @@ pub mod surface;
 pub mod tolerance;
 pub mod triangulate;
 pub mod trig;
+pub mod view;
 pub mod wide;
 
 pub use bounds::Bounds;
@@ -33,3 +35,4 @@ pub use region::{Contour, EdgeCurve, Piece, Region};
 pub use stretch::Stretch;
 pub use surface::Surface;
 pub use tolerance::Tolerance;
+pub use view::{Hidden, Method, View};

@@ -48,8 +48,11 @@ pub enum Surface {
         /// Radius of the tube.
         minor: f64,
     },
-    /// A curved surface without a closed form here (a twisted extrusion, an imported mesh, a
-    /// sphere that was scaled unevenly): the facets stand for themselves.
+    /// A smooth surface without a closed form here (a sphere that was scaled unevenly, the rounded rim of an
+    /// uneven face): its facets stand for themselves, but where two of them meet is no edge.
+    Smooth,
+    /// Any other surface (an imported mesh, a twisted extrusion): the facets stand for themselves, and whether there is
+    /// an edge between them their angle tells.
     Facets,
 }
 
@@ -85,20 +88,22 @@ impl Surface {
                 let q = tube.length();
                 (q - minor, if q > 0.0 { tube / q } else { out })
             }
-            Surface::Plane | Surface::Facets => (0.0, DVec3::Z),
+            Surface::Plane | Surface::Smooth | Surface::Facets => (0.0, DVec3::Z),
         }
     }
 
     /// The surface after a placement. A map that is not a similarity turns round surfaces into
-    /// [`Surface::Facets`]; planes stay planes.
+    /// [`Surface::Smooth`]; planes stay planes.
     pub fn placed(&self, placement: &Placement) -> Surface {
         let Some(factor) = similarity(placement) else {
-            return if *self == Surface::Plane { Surface::Plane } else { Surface::Facets };
+            return match self {
+                Surface::Plane | Surface::Facets => *self,
+                _ => Surface::Smooth,
+            };
         };
         let turn = |v: DVec3| placement.vector(v) / factor;
         match *self {
-            Surface::Plane => Surface::Plane,
-            Surface::Facets => Surface::Facets,
+            Surface::Plane | Surface::Smooth | Surface::Facets => *self,
             Surface::Cylinder { point, axis, radius } => Surface::Cylinder {
                 point: placement.point(point),
                 axis: turn(axis),
@@ -123,7 +128,7 @@ impl Surface {
 impl Surface {
     /// Whether another surface is the same one up to rounding. A cylinder is known by its axis and
     /// radius, wherever on the axis its point is given and whichever way the axis runs. Planes are alike,
-    /// and so are facets: they stand for themselves.
+    /// and so are facets: they stand for themselves. Of a smooth surface without a form nothing is known.
     ///
     /// ```
     /// use glam::DVec3;
@@ -159,7 +164,7 @@ impl Surface {
     /// facets nothing is known.
     pub fn anchor(&self) -> (DVec3, f64) {
         match *self {
-            Surface::Plane | Surface::Facets => (DVec3::ZERO, 1.0),
+            Surface::Plane | Surface::Smooth | Surface::Facets => (DVec3::ZERO, 1.0),
             Surface::Cylinder { point, axis, radius } => (point - axis * axis.dot(point), radius),
             Surface::Cone { apex, .. } => (apex, 1.0),
             Surface::Sphere { center, radius } => (center, radius),
@@ -219,5 +224,6 @@ mod tests {
             cone(DVec3::Z).is_same(&cone(DVec3::Z)) && !cone(DVec3::Z).is_same(&cone(-DVec3::Z))
         );
         assert!(!Surface::Plane.is_same(&Surface::Facets));
+        assert!(!Surface::Smooth.is_same(&Surface::Smooth));
     }
 }

@@ -38,11 +38,15 @@ fn empty_cut(realizer: &Realizer, graph: &ShapeGraph, id: ShapeId) -> Option<Dia
         let boxes = ids.iter().filter_map(|&id| reach(realizer, graph, id).ok().flatten());
         boxes.reduce(joined).map_or_else(|| "nothing".to_string(), words)
     };
-    let diagnostic = Diagnostic::warning(Code::EmptyResult, "part is empty after a cut")
-        .label(graph.origin(cut), "nothing is left of this")
+    let diagnostic = nothing_left(graph, cut, "part is empty after a cut")
         .note(format!("the first operand lies in {}", around(&[*first])))
         .note(format!("the others lie in {}", around(rest)));
     Some(diagnostic)
+}
+
+/// The warning that nothing is left of a shape.
+fn nothing_left(graph: &ShapeGraph, id: ShapeId, words: &str) -> Diagnostic {
+    Diagnostic::warning(Code::EmptyResult, words).label(graph.origin(id), "nothing is left of this")
 }
 
 /// The warning for a shape of which shrinking or rounding leaves nothing, with the box of what it was.
@@ -57,10 +61,7 @@ fn empty_core(
         Node::Offset { .. } => "part is empty after shrinking",
         _ => "part is empty after rounding",
     };
-    let diagnostic = Diagnostic::warning(Code::EmptyResult, words)
-        .label(graph.origin(id), "nothing is left of this")
-        .note(format!("the solid lies in {}", self::words(before)));
-    Some(diagnostic)
+    Some(nothing_left(graph, id, words).note(format!("the solid lies in {}", self::words(before))))
 }
 
 /// The warning for corners that rounding moved by more than the tolerance.

@@ -58,7 +58,7 @@ fn axis_of(surface: &Surface) -> Option<(DVec3, DVec3)> {
         Surface::Cylinder { point, axis, .. } => (point, axis),
         Surface::Cone { apex, axis, .. } => (apex, axis),
         Surface::Torus { center, axis, .. } => (center, axis),
-        Surface::Sphere { .. } | Surface::Plane | Surface::Facets => return None,
+        Surface::Sphere { .. } | Surface::Plane | Surface::Smooth | Surface::Facets => return None,
     };
     let turned = [axis.z, axis.y, axis.x].into_iter().find(|c| c.abs() > STEP)? < 0.0;
     let axis = if turned { -axis } else { axis };

@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     base::{Code, Diagnostic, Phase, Span, Watch, watch::during},
-    geom::{PolyMesh, Tolerance},
+    geom::{PolyMesh, Tolerance, View},
     kernel::profile::{self, TextOptions},
     output::{
         drawing::{self, Camera, CameraError, Drawing, Window},
@@ -22,9 +22,7 @@ use crate::{
     realize::{self, Realizer},
     shape::{
         Node, ShapeGraph, ShapeId, ViewSpec,
-        drawing::{
-            CuttingSpec, DimSpec, Hidden, Measured, Method, PenName, Projection, Side, StyleSpec,
-        },
+        drawing::{CuttingSpec, DimSpec, Measured, PenName, Projection, StyleSpec},
     },
 };
 
@@ -136,19 +134,14 @@ impl<'a> Drafter<'a> {
 
     /// How the lines of a view are wanted.
     fn options(&self, view: &ViewSpec) -> drawing::Options {
-        let hidden = match view.hidden {
-            Hidden::Off => drawing::Hidden::Off,
-            Hidden::Dashed => drawing::Hidden::Dashed,
-            Hidden::Depth(k) => drawing::Hidden::Depth(k),
-        };
-        let method = match view.method {
-            Method::Auto => drawing::Method::Auto,
-            Method::Count => drawing::Method::Count,
-            Method::Clip => drawing::Method::Clip,
-        };
         let standard = drawing::Options::default();
         let crease = view.style.crease.unwrap_or(standard.crease);
-        drawing::Options { hidden, method, tolerance: self.realizer.tolerance(), crease }
+        drawing::Options {
+            hidden: view.hidden,
+            method: view.method,
+            tolerance: self.realizer.tolerance(),
+            crease,
+        }
     }
 }
 
@@ -183,7 +176,7 @@ pub(super) fn sight(
     window: Option<[DVec2; 2]>,
 ) -> Result<Camera, CameraError> {
     let camera = match projection {
-        Projection::Side(side) => Camera::view(side_view(side)).at(target),
+        Projection::Side(side) => Camera::view(side).at(target),
         Projection::Direction(direction) => Camera::parallel(direction)?.at(target),
         Projection::Perspective { eye, fov } => {
             let camera = Camera::perspective(eye, target)?;
@@ -193,19 +186,6 @@ pub(super) fn sight(
     match window {
         Some([min, max]) => camera.with_window(Window { min, max }),
         None => Ok(camera),
-    }
-}
-
-pub(super) fn side_view(side: Side) -> drawing::View {
-    match side {
-        Side::Front => drawing::View::Front,
-        Side::Back => drawing::View::Back,
-        Side::Left => drawing::View::Left,
-        Side::Right => drawing::View::Right,
-        Side::Top => drawing::View::Top,
-        Side::Bottom => drawing::View::Bottom,
-        Side::Iso => drawing::View::Iso,
-        Side::Dimetric => drawing::View::Dimetric,
     }
 }
 
@@ -290,6 +270,8 @@ fn layer(name: PenName) -> Layer {
         PenName::Dimension => Layer::Dimension,
         PenName::Pattern => Layer::Pattern,
         PenName::Free => Layer::Free,
+        PenName::Upper => Layer::Upper,
+        PenName::Lower => Layer::Lower,
     }
 }
 
@@ -376,7 +358,7 @@ fn dimension(spec: &DimSpec, view: &ViewSpec, camera: &Camera) -> Result<Dimensi
 fn is_true(view: &ViewSpec) -> bool {
     !matches!(
         view.projection,
-        Projection::Side(Side::Iso | Side::Dimetric) | Projection::Perspective { .. }
+        Projection::Side(View::Iso | View::Dimetric) | Projection::Perspective { .. }
     )
 }
 

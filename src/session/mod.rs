@@ -24,6 +24,7 @@ mod patterns;
 mod shading;
 mod sheet;
 mod subjects;
+mod wrapped;
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -41,11 +42,8 @@ use crate::{
 };
 pub use crate::{
     eval::{Domain, ParamInfo, TestInfo, TestOutcome, Value},
-    geom::Tolerance,
-    shape::{
-        Measures,
-        drawing::{Hidden, Projection, Side},
-    },
+    geom::{Hidden, Tolerance, View},
+    shape::{Measures, drawing::Projection},
 };
 
 /// A parameter's value given from outside.

@@ -16,10 +16,11 @@ use crate::{
         Evaluator, ExportInfo, ExportPart, InstanceId, Limits, OutputInfo, ParamInfo, Product,
         TestInfo, TestOutcome, Write, nearest,
     },
+    geom::{Hidden, Method},
     realize,
     shape::{
         Geometry, Kind, ShapeId, ViewSpec,
-        drawing::{Hidden, Method, Place, Projection, StyleSpec},
+        drawing::{Place, Projection, StyleSpec},
     },
 };
 

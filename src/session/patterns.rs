@@ -4,14 +4,22 @@ use std::fmt;
 
 use glam::{DVec2, DVec3};
 
-use super::outline::{Outline, Tracer};
+use super::{
+    outline::{Outline, Tracer},
+    wrapped::Wrapped,
+};
 use crate::{
     base::{Code, Diagnostic},
-    geom::{Placement, PolyMesh, Surface},
+    geom::{
+        Placement, PolyMesh, Surface,
+        development::{Development, directions},
+        nearest::on_triangle,
+        triangulate::triangulate,
+    },
     output::drawing::{Kind, Stroke},
     shape::{
         Node, ShapeGraph, ShapeId,
-        drawing::{FaceSpec, FiguresSpec, Side},
+        drawing::{FaceSpec, FiguresSpec},
     },
 };
 
@@ -23,6 +31,12 @@ const PARALLEL: f64 = 1.0 - 1e-12;
 
 /// Calls of `draw_on` that one view shows, copies of a solid counted each.
 const MOST_FIGURES: usize = 10_000;
+
+/// What figures are laid on, in the solid's own frame.
+enum Ground {
+    Flat(Frame),
+    Round(Surface, Development),
+}
 
 /// A plane with directions in it.
 struct Frame {
@@ -49,17 +63,24 @@ pub fn all(
     let mut strokes = vec![];
     for ((&shape, mesh), id) in shapes.iter().zip(meshes).zip(0..) {
         for (figures, child, placement) in found(tracer.graph, &figured, shape)? {
-            let frame = frame(tracer, figures, child)?;
-            let onto = placement.after(&frame.placement());
-            let area = Area::new(mesh, &onto);
-            for line in lines(tracer, figures)? {
-                let parts = area.parts(&line.placed(&onto));
-                strokes.extend(parts.into_iter().map(|points| Stroke {
-                    points,
-                    kind: Kind::Pattern,
-                    id,
-                    round: line.placed(&onto).round,
-                }));
+            let lines = lines(tracer, figures)?;
+            let mut add = |points, round| {
+                strokes.push(Stroke { points, kind: Kind::Pattern, id, round });
+            };
+            match ground(tracer, figures, child)? {
+                Ground::Flat(frame) => {
+                    let onto = placement.after(&frame.placement());
+                    let area = Area::new(mesh, &onto);
+                    for line in lines.iter().map(|line| line.placed(&onto)) {
+                        area.parts(&line).into_iter().for_each(|part| add(part, line.round));
+                    }
+                }
+                Ground::Round(surface, sheet) => {
+                    let wrapped = Wrapped::new(&sheet, surface, placement, mesh)
+                        .ok_or_else(|| stretched(figures))?;
+                    let parts = lines.iter().flat_map(|line| wrapped.parts(line));
+                    parts.for_each(|part| add(part, None));
+                }
             }
         }
     }
@@ -133,16 +154,58 @@ fn lines(tracer: &Tracer, figures: &FiguresSpec) -> Result<Vec<Outline>, Diagnos
     }
 }
 
-/// The frame of the face that figures are drawn on, in the solid's own.
-fn frame(tracer: &Tracer, figures: &FiguresSpec, child: ShapeId) -> Result<Frame, Diagnostic> {
+/// The error for a round face that is stretched after figures were drawn on it.
+fn stretched(figures: &FiguresSpec) -> Diagnostic {
+    let words = "figures on a round face cannot be stretched with it";
+    Diagnostic::error(Code::WrongKind, words)
+        .label(figures.place.0, "")
+        .help("scale the solid first and draw on it then, or scale all axes alike")
+}
+
+/// The face that figures are drawn on, in the solid's own frame.
+fn ground(tracer: &Tracer, figures: &FiguresSpec, child: ShapeId) -> Result<Ground, Diagnostic> {
     let solid = tracer.realizer.solid(tracer.graph, child).map_err(|error| *error.diagnostic)?;
     let mesh = solid.polyhedron.mesh();
+    match figures.face {
+        FaceSpec::Near(at) => near(mesh, at).ok_or_else(|| missing(figures)),
+        _ => frame(mesh, figures).map(Ground::Flat),
+    }
+}
+
+/// The face nearest to a point, its origin there.
+fn near(mesh: &PolyMesh, at: DVec3) -> Option<Ground> {
+    let triangles = triangulate(mesh);
+    let found =
+        triangles.corners.iter().zip(&triangles.face).map(|(corners, face)| {
+            (on_triangle(corners.map(|c| mesh.points[c as usize]), at), *face)
+        });
+    let (on, face) =
+        found.min_by(|a, b| a.0.distance_squared(at).total_cmp(&b.0.distance_squared(at)))?;
+    let face = mesh.face(face as usize);
+    let (normal, surface) = (face.area_vector().try_normalize()?, face.origin().surface);
+    Some(match Development::new(surface, on, normal) {
+        Some(sheet) => Ground::Round(surface, sheet),
+        None => {
+            let (right, up) = directions(normal);
+            Ground::Flat(Frame { origin: on, right, up })
+        }
+    })
+}
+
+/// The error for a face that is not there.
+fn missing(figures: &FiguresSpec) -> Diagnostic {
+    let words = format!("the solid has no flat face {}", figures.face);
+    Diagnostic::error(Code::WrongKind, words)
+        .label(figures.place.0, "")
+        .help("name a side such as TOP, a tag, { at = point, normal = side }, or { at = point }")
+}
+
+/// The frame of a flat face, its origin in the middle.
+fn frame(mesh: &PolyMesh, figures: &FiguresSpec) -> Result<Frame, Diagnostic> {
     let Some((normal, on)) = face(mesh, &figures.face) else {
-        let words = format!("the solid has no flat face {}", figures.face);
-        let error = Diagnostic::error(Code::WrongKind, words).label(figures.place.0, "");
-        return Err(error.help("name a side such as TOP, a tag, or { at = point, normal = side }"));
+        return Err(missing(figures));
     };
-    let (right, up) = axes(normal);
+    let (right, up) = directions(normal);
     let plane = Plane { normal, on, slack: CONTACT * size(mesh) };
     let corners = plane.faces(mesh).flat_map(|face| face.loops().flatten());
     let places = corners.map(|&corner| {
@@ -159,13 +222,6 @@ fn size(mesh: &PolyMesh) -> f64 {
     mesh.points.iter().fold(0.0, |size: f64, p| size.max(p.abs().max_element()))
 }
 
-/// To the right and upwards on a face seen from outside.
-fn axes(normal: DVec3) -> (DVec3, DVec3) {
-    let level = DVec3::Z.cross(normal);
-    let right = if level.length() > CONTACT { level.normalize() } else { DVec3::X };
-    (right, normal.cross(right))
-}
-
 /// The outward normal of a face and a point of it.
 fn face(mesh: &PolyMesh, wanted: &FaceSpec) -> Option<(DVec3, DVec3)> {
     let flat = mesh.faces().filter_map(|face| {
@@ -178,7 +234,7 @@ fn face(mesh: &PolyMesh, wanted: &FaceSpec) -> Option<(DVec3, DVec3)> {
     let slack = CONTACT * size(mesh);
     let best = match wanted {
         FaceSpec::Side(side) => {
-            let towards = direction(*side);
+            let towards = side.direction();
             flat.filter(|f| f.1.dot(towards) >= PARALLEL)
                 .max_by(|a, b| a.3.dot(towards).total_cmp(&b.3.dot(towards)))
         }
@@ -190,19 +246,9 @@ fn face(mesh: &PolyMesh, wanted: &FaceSpec) -> Option<(DVec3, DVec3)> {
             flat.filter(|f| f.1.dot(towards) >= PARALLEL)
                 .find(|f| towards.dot(f.3 - *at).abs() <= slack)
         }
+        FaceSpec::Near(_) => None,
     };
     best.map(|(_, normal, _, on)| (normal, on))
-}
-
-fn direction(side: Side) -> DVec3 {
-    match side {
-        Side::Front => DVec3::NEG_Y,
-        Side::Back => DVec3::Y,
-        Side::Left => DVec3::NEG_X,
-        Side::Right => DVec3::X,
-        Side::Bottom => DVec3::NEG_Z,
-        Side::Top | Side::Iso | Side::Dimetric => DVec3::Z,
-    }
 }
 
 impl fmt::Display for FaceSpec {
@@ -211,6 +257,7 @@ impl fmt::Display for FaceSpec {
             FaceSpec::Side(side) => write!(f, "towards {}", format!("{side:?}").to_uppercase()),
             FaceSpec::Tag(tag) => write!(f, "with the tag \"{tag}\""),
             FaceSpec::Plane { .. } => write!(f, "in this plane"),
+            FaceSpec::Near(_) => write!(f, "near this point"),
         }
     }
 }
@@ -248,7 +295,7 @@ impl Area {
         let [x, y] = [DVec3::X, DVec3::Y].map(|v| onto.vector(v).normalize_or_zero());
         let turned = if onto.mirrors() { -1.0 } else { 1.0 };
         let normal = x.cross(y).normalize_or_zero() * turned;
-        let (right, up) = axes(normal);
+        let (right, up) = directions(normal);
         let frame = Frame { origin: onto.offset(), right, up };
         let plane = Plane { normal, on: frame.origin, slack: CONTACT * size(mesh) };
         let mut edges = vec![];

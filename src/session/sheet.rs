@@ -1,6 +1,6 @@
 //! From what a model says of a page to ink on it.
 
-use super::drafting::{Drafter, Letterer, side_view};
+use super::drafting::{Drafter, Letterer};
 use crate::{
     base::{Code, Diagnostic, Phase},
     output::{
@@ -76,7 +76,7 @@ fn block(title: &TitleSpec, spec: &PageSpec) -> Title {
 /// The usual direction of a view.
 fn direction(view: &ViewSpec) -> Option<View> {
     match view.projection {
-        Projection::Side(side) => Some(side_view(side)),
+        Projection::Side(side) => Some(side),
         _ => None,
     }
 }

@@ -4,12 +4,12 @@ use glam::DVec3;
 
 use super::outline::Outline;
 use crate::{
-    geom::PolyMesh,
+    geom::{Hidden, PolyMesh},
     output::drawing::{
         Body, Camera, Drawing, HeightField, Kind, Options, Scene, Stroke, grid_strokes,
         horizon_lines, visible_lines,
     },
-    shape::{ViewSpec, drawing::Hidden},
+    shape::ViewSpec,
 };
 
 /// All that one view shows, made.
@@ -22,26 +22,14 @@ pub struct Subjects<'a> {
     pub patterns: Vec<Stroke>,
 }
 
-/// Which pen draws the two sides of a surface.
-const UPPER: Kind = Kind::Pattern;
-const LOWER: Kind = Kind::Free;
-
 impl Subjects<'_> {
     /// The lines of a view. A surface on its own that is a function of x and y, with nothing hidden to draw, is drawn by
     /// its horizon.
     pub fn lines(&self, view: &ViewSpec, camera: &Camera, options: &Options) -> Drawing {
-        let mut drawing = match self.horizon(view, camera) {
+        match self.horizon(view, camera) {
             Some(drawing) => drawing,
             None => self.scene_lines(view, camera, options),
-        };
-        for line in &mut drawing.lines {
-            line.kind = match line.kind {
-                Kind::Upper => UPPER,
-                Kind::Lower => LOWER,
-                kind => kind,
-            };
         }
-        drawing
     }
 
     fn horizon(&self, view: &ViewSpec, camera: &Camera) -> Option<Drawing> {

@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 use super::node::ShapeId;
 use crate::{
     base::Span,
-    geom::{CurvedGrid, Placement, mesh::Color},
+    geom::{CurvedGrid, Hidden, Method, Placement, View, mesh::Color},
 };
 
 /// A place in the source. Two descriptions made in different places are equal all the same.
@@ -83,11 +83,11 @@ impl CurveSpec {
     }
 }
 
-/// A flat face of a solid.
+/// A face of a solid.
 #[derive(Clone, PartialEq, Debug)]
 pub enum FaceSpec {
     /// The outermost one towards a side.
-    Side(Side),
+    Side(View),
     /// The largest one with a tag.
     Tag(Arc<str>),
     /// The one in a plane.
@@ -97,9 +97,12 @@ pub enum FaceSpec {
         /// Outwards; not zero.
         normal: DVec3,
     },
+    /// The one nearest to a point, flat or round; figures start there.
+    Near(DVec3),
 }
 
-/// Figures drawn on a face: their x and y run to the right and upwards seen from outside, from the middle of the face.
+/// Figures drawn on a face: their x and y run to the right and upwards seen from outside, from the middle of the face or
+/// the point it is named by. They are laid on round faces as a label is.
 #[derive(Clone, PartialEq, Debug)]
 pub struct FiguresSpec {
     /// The face.
@@ -112,32 +115,11 @@ pub struct FiguresSpec {
     pub place: Place,
 }
 
-/// One of the usual directions of view.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Side {
-    /// Along +y.
-    Front,
-    /// Along -y.
-    Back,
-    /// Along +x.
-    Left,
-    /// Along -x.
-    Right,
-    /// Along -z.
-    Top,
-    /// Along +z.
-    Bottom,
-    /// From (1, -1, 1).
-    Iso,
-    /// From (1, -sqrt 7, 1).
-    Dimetric,
-}
-
 /// Where the eye is.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Projection {
     /// One of the usual parallel ones.
-    Side(Side),
+    Side(View),
     /// Parallel; a direction towards the eye that is not zero.
     Direction(DVec3),
     /// From an eye that is not at the target.
@@ -147,28 +129,6 @@ pub enum Projection {
         /// Full vertical angle, above 0 and below 180.
         fov: Option<f64>,
     },
-}
-
-/// Which hidden lines are drawn.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Hidden {
-    /// None.
-    Off,
-    /// All, dashed.
-    Dashed,
-    /// Those behind at most so many faces, like visible ones.
-    Depth(u32),
-}
-
-/// How hidden lines are found.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Method {
-    /// What suits the scene.
-    Auto,
-    /// By counting faces in front.
-    Count,
-    /// By clipping against faces.
-    Clip,
 }
 
 /// The classes of line that a style sets.
@@ -192,11 +152,15 @@ pub enum PenName {
     Pattern,
     /// Lines in space.
     Free,
+    /// Grid lines of a surface seen on its upper side.
+    Upper,
+    /// Grid lines of a surface seen on its lower side.
+    Lower,
 }
 
 impl PenName {
     /// All of them with the words of the language.
-    pub const ALL: [(PenName, &'static str); 9] = [
+    pub const ALL: [(PenName, &'static str); 11] = [
         (PenName::Visible, "visible"),
         (PenName::Hidden, "hidden"),
         (PenName::Center, "center"),
@@ -206,6 +170,8 @@ impl PenName {
         (PenName::Dimension, "dimension"),
         (PenName::Pattern, "pattern"),
         (PenName::Free, "free"),
+        (PenName::Upper, "upper"),
+        (PenName::Lower, "lower"),
     ];
 }
 

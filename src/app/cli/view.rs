@@ -5,18 +5,17 @@ use std::{io, io::Write, path::Path};
 use glam::DVec3;
 
 use super::{
-    Exit,
-    args::View,
+    Exit, args,
     desk::{Desk, write_beside},
     fail,
 };
 use crate::{
     app::render::Style,
-    session::{Format, Hidden, Projection, Side, Sight},
+    session::{Format, Hidden, Projection, Sight, View},
 };
 
 /// Draws all parts as one view, writes the file and prints its path.
-pub fn run(arguments: &View, style: Style) -> io::Result<Exit> {
+pub fn run(arguments: &args::View, style: Style) -> io::Result<Exit> {
     let asked = sight(arguments).and_then(|sight| Ok((sight, target(arguments)?)));
     let (sight, (path, format)) = match asked {
         Ok(asked) => asked,
@@ -46,7 +45,7 @@ pub fn run(arguments: &View, style: Style) -> io::Result<Exit> {
 }
 
 /// The file to write: what `-o` names, else `out/<stem>.svg`.
-fn target(arguments: &View) -> Result<(String, Format), String> {
+fn target(arguments: &args::View) -> Result<(String, Format), String> {
     let Some(path) = &arguments.output else {
         let stem = Path::new(&arguments.model.file).file_stem().unwrap_or_default();
         let stem =
@@ -60,7 +59,7 @@ fn target(arguments: &View) -> Result<(String, Format), String> {
     }
 }
 
-fn sight(arguments: &View) -> Result<Sight, String> {
+fn sight(arguments: &args::View) -> Result<Sight, String> {
     let target = arguments.target.as_deref().map_or(Ok(DVec3::ZERO), point)?;
     let projection = match &arguments.eye {
         Some(eye) => Projection::Perspective { eye: point(eye)?, fov: None },
@@ -80,14 +79,14 @@ fn sight(arguments: &View) -> Result<Sight, String> {
 /// A side, or a direction such as `1,-2,1`.
 fn from(text: &str) -> Result<Projection, String> {
     let sides = [
-        ("front", Side::Front),
-        ("back", Side::Back),
-        ("left", Side::Left),
-        ("right", Side::Right),
-        ("top", Side::Top),
-        ("bottom", Side::Bottom),
-        ("iso", Side::Iso),
-        ("dimetric", Side::Dimetric),
+        ("front", View::Front),
+        ("back", View::Back),
+        ("left", View::Left),
+        ("right", View::Right),
+        ("top", View::Top),
+        ("bottom", View::Bottom),
+        ("iso", View::Iso),
+        ("dimetric", View::Dimetric),
     ];
     if let Some((_, side)) = sides.iter().find(|(name, _)| text.eq_ignore_ascii_case(name)) {
         return Ok(Projection::Side(*side));
@@ -125,7 +124,7 @@ mod tests {
 
     #[test]
     fn directions_are_sides_or_vectors() {
-        assert_eq!(from("ISO"), Ok(Projection::Side(Side::Iso)));
+        assert_eq!(from("ISO"), Ok(Projection::Side(View::Iso)));
         assert_eq!(from("1,-2, 3"), Ok(Projection::Direction(DVec3::new(1.0, -2.0, 3.0))));
         assert!(from("1,2").is_err() && from("isometric").is_err() && from("1,nan,2").is_err());
         assert_eq!(hidden("depth:2"), Ok(Hidden::Depth(2)));

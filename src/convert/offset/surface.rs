@@ -115,6 +115,8 @@ enum Source {
     Edge(u32, u32),
     /// A rim of many edges between faces of two origins.
     Rim(u32, u32),
+    /// A rim about a circle, where a flat face, given by its plane, ends in a cylinder, given by its origin.
+    Ring(u32, u32),
     Point(u32),
 }
 
@@ -215,7 +217,7 @@ impl<'a> Builder<'a> {
         }
         let faces: Vec<u32> = fan.iter().map(|&c| self.rings.corners[c as usize].face).collect();
         let round = Surface::Sphere { center: at, radius: self.measure.radius };
-        let surface = if figure.open { Surface::Facets } else { round };
+        let surface = if figure.open { Surface::Smooth } else { round };
         let origin = self.origin(Source::Point(point), surface, &faces);
         for triangle in &figure.cap {
             self.caps.push((triangle.map(|i| i + first), origin));
@@ -341,18 +343,35 @@ impl<'a> Builder<'a> {
                 .all(|i| (square(&i) - self.measure.radius).abs() <= ROUND * self.measure.radius)
         });
         let [l, r] = faces.map(|f| self.mesh.face(f as usize).origin_index());
-        let own =
-            faces.map(|f| matches!(self.mesh.face(f as usize).origin().surface, Surface::Plane));
-        let (source, surface) = if round && own == [true; 2] {
+        let own = faces.map(|f| self.mesh.face(f as usize).origin().surface);
+        let (source, surface) = if round && own == [Surface::Plane; 2] {
             let radius = self.measure.radius;
             (Source::Edge(v, w), Surface::Cylinder { point: a, axis, radius })
+        } else if let Some(ring) = self.ring(faces, a) {
+            ring
         } else {
-            (Source::Rim(l.min(r), l.max(r)), Surface::Facets)
+            (Source::Rim(l.min(r), l.max(r)), Surface::Smooth)
         };
         let origin = self.origin(source, surface, &faces);
         if !self.strip(&near, &far, axis, origin) {
             self.turned.extend([v, w]);
         }
+    }
+
+    /// The torus about the circle where a flat face ends in a cylinder across it, through a point of that.
+    fn ring(&self, faces: [u32; 2], on: DVec3) -> Option<(Source, Surface)> {
+        let flat = |f: u32| self.mesh.face(f as usize).origin().surface == Surface::Plane;
+        let [plane, curved] = if flat(faces[0]) { faces } else { [faces[1], faces[0]] };
+        let wall = self.mesh.face(curved as usize);
+        let Surface::Cylinder { point, axis, .. } = wall.origin().surface else { return None };
+        let lean = self.rings.normals[plane as usize].cross(axis).length();
+        if !flat(plane) || lean > ROUND {
+            return None;
+        }
+        let center = point + axis * (on - point).dot(axis);
+        let (major, minor) = (on.distance(center), self.measure.radius);
+        let source = Source::Ring(self.mesh.face(plane as usize).plane(), wall.origin_index());
+        Some((source, Surface::Torus { center, axis, major, minor }))
     }
 
     /// Quadrilaterals and triangles between two chains from the left face to the right one. Whether all of
@@ -442,10 +461,10 @@ impl<'a> Builder<'a> {
 fn grown(surface: Surface, at: DVec3, normal: DVec3, r: f64) -> Surface {
     let away = |from: DVec3| if (at - from).dot(normal) >= 0.0 { r } else { -r };
     let positive = |radius: f64, make: &dyn Fn(f64) -> Surface| {
-        if radius > 0.0 { make(radius) } else { Surface::Facets }
+        if radius > 0.0 { make(radius) } else { Surface::Smooth }
     };
     match surface {
-        Surface::Plane => Surface::Plane,
+        Surface::Plane | Surface::Smooth | Surface::Facets => surface,
         Surface::Sphere { center, radius } => {
             positive(radius + away(center), &|radius| Surface::Sphere { center, radius })
         }
@@ -453,6 +472,15 @@ fn grown(surface: Surface, at: DVec3, normal: DVec3, r: f64) -> Surface {
             let foot = point + axis * (at - point).dot(axis);
             positive(radius + away(foot), &|radius| Surface::Cylinder { point, axis, radius })
         }
-        _ => Surface::Facets,
+        Surface::Torus { center, axis, major, minor } => {
+            let out = (at - center).reject_from_normalized(axis).normalize_or_zero();
+            let tube = away(center + out * major);
+            positive(minor + tube, &|minor| Surface::Torus { center, axis, major, minor })
+        }
+        Surface::Cone { apex, axis, slope } => {
+            let foot = apex + axis * (at - apex).dot(axis);
+            let apex = apex - axis * (away(foot) * (1.0 + slope * slope).sqrt() / slope);
+            Surface::Cone { apex, axis, slope }
+        }
     }
 }

@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use super::{Args, Native, views::side};
+use super::{Args, Native, coordinates, views::side};
 use crate::{
     base::Code,
     eval::{evaluator::Evaluator, failure::Outcome, types::shown, value::Value},
-    geom::Placement,
+    geom::{Placement, View},
     shape::{
         CurveSpec, Node,
-        drawing::{FaceSpec, FiguresSpec, Place, Side},
+        drawing::{FaceSpec, FiguresSpec, Place},
     },
 };
 
@@ -46,10 +46,15 @@ fn draw_on(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
 fn face(args: &Args) -> Outcome<FaceSpec> {
     match args.value(1) {
         Value::Symbol(symbol) => match side(*symbol) {
-            None | Some(Side::Iso | Side::Dimetric) => {}
+            None | Some(View::Iso | View::Dimetric) => {}
             Some(side) => return Ok(FaceSpec::Side(side)),
         },
         Value::Text(tag) => return Ok(FaceSpec::Tag((&***tag).into())),
+        Value::Record(record) if record.get("normal").is_none() && record.fields().len() == 1 => {
+            if let Some(at) = record.get("at").and_then(coordinates) {
+                return Ok(FaceSpec::Near(at));
+            }
+        }
         Value::Record(_) => {
             let (plane, _) = super::views::plane(args, 1)?;
             return Ok(FaceSpec::Plane { at: plane.at, normal: plane.normal });
@@ -57,7 +62,7 @@ fn face(args: &Args) -> Outcome<FaceSpec> {
         _ => {}
     }
     let words = format!(
-        "a face is FRONT, BACK, LEFT, RIGHT, TOP or BOTTOM, a tag, or {{ at = [x, y, z], normal = [x, y, z] }}, got {}",
+        "a face is FRONT, BACK, LEFT, RIGHT, TOP or BOTTOM, a tag, {{ at = [x, y, z], normal = [x, y, z] }}, or {{ at = [x, y, z] }}, got {}",
         shown(args.value(1))
     );
     args.fail(1, Code::WrongKind, words)

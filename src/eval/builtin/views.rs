@@ -15,12 +15,12 @@ use crate::{
         types::shown,
         value::{Record, Symbol, Value},
     },
-    geom::CurvedGrid,
+    geom::{CurvedGrid, Hidden, Method, View},
     shape::{
         CurveSpec, ShapeId, ViewSpec,
         drawing::{
-            CutPlane, CuttingSpec, DimSpec, Hidden, Measured, Method, PenName, PenSpec, Place,
-            Projection, Side, StyleSpec,
+            CutPlane, CuttingSpec, DimSpec, Measured, PenName, PenSpec, Place, Projection,
+            StyleSpec,
         },
     },
 };
@@ -43,25 +43,43 @@ pub const TABLE: &[(&str, Native)] = &[
 fn view(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
     let subjects = subjects(evaluator, args)?;
     let target = args.point(3)?;
+    let projection = projection(args, target)?;
     let spec = ViewSpec {
-        shapes: subjects.shapes,
-        surfaces: subjects.surfaces,
-        profiles: subjects.profiles,
-        curves: subjects.curves,
-        projection: projection(args, target)?,
         target,
         window: window(args)?,
         hidden: hidden(args, 6)?,
         method: method(args)?,
         style: style(args, 7)?,
+        ..plain(evaluator, args, subjects, projection)
+    };
+    Ok(Value::Drawing(Arc::new(spec)))
+}
+
+/// A view of subjects with nothing else said of it.
+fn plain(
+    evaluator: &Evaluator,
+    args: &Args,
+    subjects: Subjects,
+    projection: Projection,
+) -> ViewSpec {
+    ViewSpec {
+        shapes: subjects.shapes,
+        surfaces: subjects.surfaces,
+        profiles: subjects.profiles,
+        curves: subjects.curves,
+        projection,
+        target: DVec3::ZERO,
+        window: None,
+        hidden: Hidden::Off,
+        method: Method::Auto,
+        style: StyleSpec::default(),
         section: None,
         center_lines: false,
         dims: vec![],
         cuttings: vec![],
         caption: None,
         place: Place(evaluator.shown_at(args.call)),
-    };
-    Ok(Value::Drawing(Arc::new(spec)))
+    }
 }
 
 /// Why a surface is not cut.
@@ -101,16 +119,16 @@ pub(super) fn subjects(evaluator: &mut Evaluator, args: &Args) -> Outcome<Subjec
     Ok(found)
 }
 
-pub(super) fn side(symbol: Symbol) -> Option<Side> {
+pub(super) fn side(symbol: Symbol) -> Option<View> {
     Some(match symbol {
-        Symbol::Front => Side::Front,
-        Symbol::Back => Side::Back,
-        Symbol::Left => Side::Left,
-        Symbol::Right => Side::Right,
-        Symbol::Top => Side::Top,
-        Symbol::Bottom => Side::Bottom,
-        Symbol::Iso => Side::Iso,
-        Symbol::Dimetric => Side::Dimetric,
+        Symbol::Front => View::Front,
+        Symbol::Back => View::Back,
+        Symbol::Left => View::Left,
+        Symbol::Right => View::Right,
+        Symbol::Top => View::Top,
+        Symbol::Bottom => View::Bottom,
+        Symbol::Iso => View::Iso,
+        Symbol::Dimetric => View::Dimetric,
         _ => return None,
     })
 }
@@ -124,13 +142,13 @@ pub(super) fn projection(args: &Args, target: DVec3) -> Outcome<Projection> {
         return args.fail(4, Code::BadCall, words);
     }
     if !args.given(1) {
-        return Ok(Projection::Side(Side::Iso));
+        return Ok(Projection::Side(View::Iso));
     }
     match (args.value(1), coordinates(args.value(1))) {
         (_, Some(DVec3::ZERO)) => args.degenerate(1, "must not be the zero vector"),
         (_, Some(direction)) => Ok(Projection::Direction(direction)),
         (Value::Symbol(symbol), _) if side(*symbol).is_some() => {
-            Ok(Projection::Side(side(*symbol).unwrap_or(Side::Iso)))
+            Ok(Projection::Side(side(*symbol).unwrap_or(View::Iso)))
         }
         (other, _) => {
             let words = format!("a view is from a side or a direction, got {}", shown(other));
@@ -311,18 +329,11 @@ fn positive(args: &Args, i: usize, key: &str, value: &Value, unit: Dimension) ->
 }
 
 /// The plane of an argument: a side such as FRONT, or `{ at = ..., normal = ... }`.
-pub(super) fn plane(args: &Args, i: usize) -> Outcome<(CutPlane, Option<Side>)> {
+pub(super) fn plane(args: &Args, i: usize) -> Outcome<(CutPlane, Option<View>)> {
     let through_origin = |normal| CutPlane { at: DVec3::ZERO, normal };
-    let facing = |side| {
-        Some(through_origin(match side {
-            Side::Front => DVec3::NEG_Y,
-            Side::Back => DVec3::Y,
-            Side::Left => DVec3::NEG_X,
-            Side::Right => DVec3::X,
-            Side::Top => DVec3::Z,
-            Side::Bottom => DVec3::NEG_Z,
-            Side::Iso | Side::Dimetric => return None,
-        }))
+    let facing = |side: View| {
+        let across = !matches!(side, View::Iso | View::Dimetric);
+        across.then(|| through_origin(side.direction()))
     };
     match args.value(i) {
         Value::Symbol(symbol) => {
@@ -363,23 +374,12 @@ fn section_of_shapes(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
         return args.fail(0, Code::WrongKind, OPEN);
     }
     let (plane, side) = plane(args, 1)?;
+    let projection = side.map_or(Projection::Direction(plane.normal), Projection::Side);
     let spec = ViewSpec {
-        shapes: subjects.shapes,
-        surfaces: vec![],
-        profiles: subjects.profiles,
-        curves: subjects.curves,
-        projection: side.map_or(Projection::Direction(plane.normal), Projection::Side),
-        target: DVec3::ZERO,
-        window: None,
         hidden: hidden(args, 2)?,
-        method: Method::Auto,
         style: style(args, 3)?,
         section: Some(plane),
-        center_lines: false,
-        dims: vec![],
-        cuttings: vec![],
-        caption: None,
-        place: Place(evaluator.shown_at(args.call)),
+        ..plain(evaluator, args, subjects, projection)
     };
     Ok(Value::Drawing(Arc::new(spec)))
 }

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec2, DVec3, dvec2};
 use thiserror::Error;
 
-use crate::geom::trig::tan_deg;
+use crate::geom::{View, trig::tan_deg};
 
 /// The part of the eye's distance from the target within which nothing is drawn: a picture has to end
 /// before the eye, where points have no image.
@@ -20,43 +20,6 @@ pub struct Window {
     pub min: DVec2,
     /// Right and upper border.
     pub max: DVec2,
-}
-
-/// The usual directions of view.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum View {
-    /// Along +y, x to the right.
-    Front,
-    /// Along -y, x to the left.
-    Back,
-    /// From -x along +x, y to the left.
-    Left,
-    /// From +x along -x, y to the right.
-    Right,
-    /// From above, y up.
-    Top,
-    /// From below, y down.
-    Bottom,
-    /// From (1, -1, 1): all three axes shrink to sqrt(2/3).
-    Iso,
-    /// From (1, -sqrt 7, 1): the axes shrink as 1 : 1/2 : 1.
-    Dimetric,
-}
-
-impl View {
-    /// The direction towards the eye, not a unit vector.
-    pub fn direction(self) -> DVec3 {
-        match self {
-            View::Front => DVec3::NEG_Y,
-            View::Back => DVec3::Y,
-            View::Left => DVec3::NEG_X,
-            View::Right => DVec3::X,
-            View::Top => DVec3::Z,
-            View::Bottom => DVec3::NEG_Z,
-            View::Iso => DVec3::new(1.0, -1.0, 1.0),
-            View::Dimetric => DVec3::new(1.0, -(7.0f64.sqrt()), 1.0),
-        }
-    }
 }
 
 /// A parallel or a perspective projection onto a plane through the target, so that lengths in that plane

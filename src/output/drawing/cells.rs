@@ -108,7 +108,8 @@ impl Cells {
         let first = self.clamped(low.y - SLACK, 1);
         let last = self.clamped(high.y + SLACK, 1);
         let slope = (high.x - low.x) / (high.y - low.y);
-        let inclined = matches!(extent, Extent::Segment(..)) && first < last;
+        // A level segment on the border of two rows is in both, all along.
+        let inclined = matches!(extent, Extent::Segment(..)) && first < last && low.y < high.y;
         for row in first..=last {
             let (a, b) = if inclined {
                 let at = |y: f64| low.x + (y.clamp(low.y, high.y) - low.y) * slope;
@@ -197,6 +198,17 @@ mod tests {
         let mut here = vec![];
         cells.at(center(57), |i| here.push(i));
         assert!(here.contains(&57) && here.len() < 10);
+    }
+
+    #[test]
+    fn level_segments_on_a_border_of_cells_find_what_is_on_both_sides() {
+        let corner = |i: usize| dvec2(0.0, 16.0 * i as f64);
+        let cells = Cells::new(64, |i| Extent::Box(corner(i), corner(i) + dvec2(1024.0, 16.0)));
+        let border = cells.min.y + 4.0 / cells.scale.y;
+        let mut found = vec![];
+        cells.along(dvec2(900.0, border), dvec2(1000.0, border), |i| found.push(i));
+        let here = (border / 16.0) as u32;
+        assert!(found.contains(&here) && found.contains(&(here - 1)), "{here}: {found:?}");
     }
 
     #[test]

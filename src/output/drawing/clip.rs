@@ -139,8 +139,7 @@ impl<'a> Clipper<'a> {
         let curve = self.model.curves.get(edge.curve as usize);
         let own = curve.is_some_and(|c| c.is_contour_of(field));
         let contact = if own { field.local(p).radius() * OWN } else { self.model.bound };
-        let corner = self.model.sides[facet.sides[0] as usize][0];
-        let corner = self.model.space[corner as usize];
+        let corner = self.model.space[facet.corner as usize];
         ahead(field, &facet.plane, corner, p, sight) > contact
     }
 }

@@ -136,8 +136,9 @@ impl<'a> Counter<'a> {
         front.then(|| (points[0], one.place(points[0])))
     }
 
-    /// The spans of a chain of chords, by chord and place on it, and the true points where they meet.
-    pub fn hide_chain(&self, chain: &[Chord], tally: &mut Tally) -> Vec<Stretch> {
+    /// The spans of a chain of chords, by chord and place on it, and the true points where they meet. Hidden ones are of
+    /// order 1 unless they are `layered`.
+    pub fn hide_chain(&self, chain: &[Chord], tally: &mut Tally, layered: bool) -> Vec<Stretch> {
         let Tally { sieve, .. } = tally;
         let mut turns: Vec<Turn> = vec![];
         for (number, chord) in chain.iter().enumerate() {
@@ -162,7 +163,7 @@ impl<'a> Counter<'a> {
         }
         self.settle_ends(chain, &mut turns);
         turns.sort_unstable_by(|a, b| a.at.total_cmp(&b.at));
-        self.stretches(chain, &turns)
+        self.stretches(chain, &turns, layered)
     }
 
     /// Brings turns that are beyond an end of the chain to the other end, if it is closed, or to that end.
@@ -181,7 +182,7 @@ impl<'a> Counter<'a> {
 
     /// Counts along a chain. The count is kept right by a sight line in each long stretch: chords cross where curves
     /// that touch do not, and a turn missed or met twice must not spoil the rest of the chain.
-    fn stretches(&self, chain: &[Chord], turns: &[Turn]) -> Vec<Stretch> {
+    fn stretches(&self, chain: &[Chord], turns: &[Turn], layered: bool) -> Vec<Stretch> {
         let end = chain.len() as f64;
         let last = self.model.space[chain[chain.len() - 1].ends[1] as usize];
         let marks = turns.iter().map(|t| (t.at, t.point, t.by)).chain([(end, last, 0)]);
@@ -198,7 +199,8 @@ impl<'a> Counter<'a> {
         }
         self.count(chain, &mut parts);
         let mut out: Vec<Stretch> = vec![];
-        for (part, _) in parts {
+        for (mut part, _) in parts {
+            part.order = if layered { part.order } else { part.order.min(1) };
             match out.last_mut() {
                 Some(last) if last.order == part.order => last.to = part.to,
                 _ => out.push(part),

@@ -12,7 +12,7 @@ use super::{Body, Camera, Drawing, Options, Scene, Stroke, scene::Kind, visible_
 use crate::geom::CurvedGrid;
 
 /// The grid lines of a surface: [`Kind::Upper`] where the side is towards the eye from which u turns to v
-/// counter-clockwise, [`Kind::Lower`] where the other is, and [`Kind::Pattern`] all over a surface that is closed both ways.
+/// counter-clockwise, and all over a surface that is closed both ways; [`Kind::Lower`] where the other is.
 pub fn grid_strokes(grid: &CurvedGrid, camera: &Camera, id: u32) -> Vec<Stroke> {
     let ([nu, nv], [cu, cv]) = (grid.size(), grid.cells());
     let sides = Sides::new(grid, camera);
@@ -97,9 +97,7 @@ impl<'a> Sides<'a> {
 
     /// The kind of a grid line between two triangles.
     fn kind(&self, beside: [Option<bool>; 2]) -> Kind {
-        if self.grid.closed() == [true; 2] {
-            Kind::Pattern
-        } else if beside.contains(&Some(true)) {
+        if self.grid.closed() == [true; 2] || beside.contains(&Some(true)) {
             Kind::Upper
         } else {
             Kind::Lower

@@ -10,7 +10,7 @@ use crate::geom::{Surface, surface::around_axis};
 pub enum Field {
     /// A plane.
     Flat(Plane),
-    /// A round surface: not [`Surface::Plane`] and not [`Surface::Facets`].
+    /// A round surface, which has a closed form and is no plane.
     Round(Surface),
 }
 
@@ -51,6 +51,14 @@ fn inverse(r: f64) -> f64 {
 }
 
 impl Field {
+    /// Where a cone ends in a point, which is turned every way.
+    pub fn apex(&self) -> Option<DVec3> {
+        match *self {
+            Field::Round(Surface::Cone { apex, .. }) => Some(apex),
+            _ => None,
+        }
+    }
+
     /// The field at a point.
     pub fn local(&self, p: DVec3) -> Local {
         match self {
@@ -93,7 +101,7 @@ fn bends(surface: &Surface, p: DVec3, normal: DVec3) -> [(DVec3, f64); 2] {
             let (along, q) = (axis.cross(out), (out * (r - major) + axis * h).length());
             [(along, normal.dot(out) * inverse(r)), (along.cross(normal), inverse(q))]
         }
-        Surface::Plane | Surface::Facets => [none; 2],
+        Surface::Plane | Surface::Smooth | Surface::Facets => [none; 2],
     }
 }
 

@@ -73,13 +73,14 @@ mod smooth;
 mod span;
 mod strips;
 
-pub use camera::{Camera, CameraError, View, Window};
+pub use crate::geom::{Hidden, Method, View};
+pub use camera::{Camera, CameraError, Window};
 pub use curved_grid::{grid_lines, grid_strokes};
 pub use drawing::{Class, Drawing, Line, Path, Segment};
 pub use horizon::{HeightField, HorizonError, horizon_lines};
 pub use outline::true_outlines;
 pub use round::Round;
-pub use scene::{Body, Hidden, Kind, Method, Options, Scene, Stroke};
+pub use scene::{Body, Kind, Options, Scene, Stroke};
 
 use rayon::prelude::*;
 
@@ -101,6 +102,10 @@ const COINCIDENT: f64 = 1e-8;
 /// look right and be as long, and each digit costs half as many pieces again.
 const LOOSE: f64 = 100.0;
 
+/// A line that is not so many times as long as coincident lines are apart is a dot: an edge seen end-on, or what rounding
+/// leaves of a line beside the end of another.
+const DOT: f64 = 16.0;
+
 /// The lines of a scene that an eye sees, and those it would see but for what is in front.
 ///
 /// Never fails: what is behind the eye or outside the window is left out, as are bodies and strokes with points that
@@ -108,7 +113,8 @@ const LOOSE: f64 = 100.0;
 /// drawing without lines. The same input gives the same drawing whatever the number of threads.
 pub fn visible_lines(scene: &Scene, camera: &Camera, options: &Options) -> Drawing {
     let model = Model::new(scene, camera, options);
-    let mut sheet = Sheet::default();
+    let layered = matches!(options.hidden, Hidden::Depth(_));
+    let mut sheet = Sheet { layered, ..Sheet::default() };
     hide(&model, options.method, &mut sheet);
     if let Some(window) = camera.window() {
         sheet.cut(&window);
@@ -119,6 +125,8 @@ pub fn visible_lines(scene: &Scene, camera: &Camera, options: &Options) -> Drawi
 /// Lines before they are merged.
 #[derive(Default)]
 struct Sheet {
+    /// Whether it counts how many faces a hidden part is behind; otherwise hidden parts are of order 1.
+    layered: bool,
     straight: Vec<Piece>,
     arcs: Vec<ArcPiece>,
     curves: Vec<(Path, Mark)>,
@@ -151,7 +159,13 @@ fn hide(model: &Model, method: Method, sheet: &mut Sheet) {
         let Some(ellipse) = bow.ellipse(model) else { continue };
         let edges = bow.edges();
         sheet.add_edges(model, from..edges.start, |e, out| clipper.hide(e, &mut desk, out));
-        let hide = |edge: &Edge, out: &mut Vec<Span>| clipper.hide(edge, &mut desk, out);
+        let layered = sheet.layered;
+        let hide = |edge: &Edge, out: &mut Vec<Span>| {
+            clipper.hide(edge, &mut desk, out);
+            if !layered {
+                span::unite(out);
+            }
+        };
         bow.pieces(model, ellipse, hide, mark, &mut sheet.arcs);
         from = edges.end;
     }
@@ -202,7 +216,7 @@ fn hide_chains(model: &Model, counter: &Counter, sheet: &mut Sheet) {
             let edge = &model.edges[chain[0].edge as usize];
             let fitted = Fitted::new(model, chain, tolerance);
             let mut shapes = vec![];
-            for stretch in counter.hide_chain(chain, tally) {
+            for stretch in counter.hide_chain(chain, tally, sheet.layered) {
                 let mark = mark(edge, stretch.order);
                 fitted.shapes(&stretch, |shape| shapes.push((shape, mark)));
             }
@@ -237,6 +251,9 @@ impl Sheet {
             if edge.curve == NONE && model.at[edge.a as usize] != model.at[edge.b as usize] {
                 spans.clear();
                 hide(edge, &mut spans);
+                if !self.layered {
+                    span::unite(&mut spans);
+                }
                 self.add_spans(model, edge, &spans);
             }
         }
@@ -302,6 +319,7 @@ impl Sheet {
             segments: counted.map(|(path, _)| path.segments.len()).sum(),
             lines: join::joined(all, (tolerance / 8.0).max(f64::MIN_POSITIVE))
                 .into_iter()
+                .filter(|(path, _)| path.length() > tolerance * DOT)
                 .filter_map(|(path, mark)| line(path, mark, hidden))
                 .collect(),
         }

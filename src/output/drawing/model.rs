@@ -42,6 +42,10 @@ const MOST_CONVEX: usize = 32;
 /// percent of the scene's size by 1e-7.
 const FLAT: f64 = 1e-6;
 
+/// Facets of one smooth surface meet in an edge where the surface is folded over itself: where the cosine of the angle
+/// between them is below this. Tolerances as large as a radius make corners of less than a right angle.
+pub const FOLDED: f64 = 0.0;
+
 /// A face that hides what is behind it.
 #[derive(Clone, Copy, Debug)]
 pub struct Facet {
@@ -55,6 +59,8 @@ pub struct Facet {
     pub max: DVec2,
     /// The true surface it stands for: a place in [`Model::fields`], or [`NONE`].
     pub field: u32,
+    /// A corner where that surface has a normal, as a cone has none at its apex.
+    pub corner: u32,
 }
 
 /// A line that is drawn where nothing hides it.
@@ -131,7 +137,8 @@ pub struct Model {
     pub fields: Vec<Field>,
     /// True curves of edges and outlines.
     pub curves: Vec<Curve>,
-    /// Points where a chain of chords is cut although it goes on: cusps of contours.
+    /// Points where a chain of chords is cut although it goes on: cusps of contours and
+    /// apexes of cones.
     pub cusps: Vec<u32>,
     /// Strokes that are arcs.
     pub bows: Vec<Bow>,
@@ -347,10 +354,10 @@ impl Model {
         }
         let corners = self.sides[first..].iter();
         let (min, max) = around(corners.map(|s| self.at[s[1] as usize]));
-        let on = self.space[self.sides[first][0] as usize];
-        let plane = Plane { normal, offset: normal.dot(on) };
+        let corner = self.sides[first][0];
+        let plane = Plane { normal, offset: normal.dot(self.space[corner as usize]) };
         let sides = [first as u32, self.sides.len() as u32];
-        self.facets.push(Facet { plane, sides, min, max, field: NONE });
+        self.facets.push(Facet { plane, sides, min, max, field: NONE, corner });
     }
 
     /// Adds a point.
@@ -432,8 +439,12 @@ fn kind(mesh: &PolyMesh, link: &Link, faces: &Faces, round: &[bool], crease: f64
     let cosine = faces.normals[left].dot(faces.normals[right]);
     let [s, t] = [one, other].map(|f| f.origin().surface);
     let [curved, bent] = [one, other].map(|f| round[f.origin_index() as usize]);
+    let same = one.origin_index() == other.origin_index();
     let sharp = match (s, t) {
-        (Surface::Facets, _) | (_, Surface::Facets) => cosine < crease,
+        (Surface::Smooth, _) if same => cosine < FOLDED,
+        (Surface::Smooth | Surface::Facets, _) | (_, Surface::Smooth | Surface::Facets) => {
+            cosine < crease
+        }
         _ if curved && bent => s != t,
         _ if curved || bent => true,
         _ => cosine <= 0.0 || faces.normals[left].cross(faces.normals[right]).length() > FLAT,

@@ -36,7 +36,7 @@ pub struct Patches {
 /// Which origins are round surfaces that their facets keep to.
 pub fn faithful_origins(mesh: &PolyMesh, links: &[Link], tolerance: Tolerance) -> Vec<bool> {
     let most = tolerance.mm() * FAITHFUL;
-    let flat = |s: &Surface| matches!(s, Surface::Plane | Surface::Facets);
+    let flat = |s: &Surface| matches!(s, Surface::Plane | Surface::Smooth | Surface::Facets);
     let mut round: Vec<bool> = mesh.origins().iter().map(|o| !flat(&o.surface)).collect();
     if !round.contains(&true) {
         return round;
@@ -65,11 +65,14 @@ impl Patches {
         let mut of_origin = vec![[NONE; 2]; round.len()];
         for face in mesh.faces() {
             let normal = face.area_vector().normalize_or_zero();
-            let on = mesh.points[face.outer()[0] as usize];
+            let corners = face.outer();
+            let on = mesh.points[corners[0] as usize];
             let origin = face.origin_index() as usize;
             let patch = if round[origin] {
                 let field = Field::Round(face.origin().surface);
-                let inside = field.slope(on).1.dot(normal) < 0.0;
+                // Between two corners, since the apex of a cone has no normal.
+                let across = mesh.points[corners[corners.len() / 2] as usize];
+                let inside = field.slope(on.midpoint(across)).1.dot(normal) < 0.0;
                 let outward = if inside { -1.0 } else { 1.0 };
                 let known = &mut of_origin[origin][usize::from(inside)];
                 if *known == NONE {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::round::Round;
-use crate::geom::{PolyMesh, Tolerance};
+use crate::geom::{Hidden, Method, PolyMesh, Tolerance};
 
 /// A solid, or an open surface when its mesh has borders; both sides of an open one hide.
 #[derive(Clone, Copy, Debug)]
@@ -72,29 +72,6 @@ impl<'a> Scene<'a> {
             .collect();
         Scene { bodies, strokes: vec![] }
     }
-}
-
-/// Which hidden lines are kept.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Hidden {
-    /// None.
-    Off,
-    /// All, as hidden lines.
-    Dashed,
-    /// Those behind at most so many front faces, as visible lines.
-    Depth(u32),
-}
-
-/// How hidden lines are found.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Method {
-    /// Convex sets when all bodies are convex polyhedra, the count otherwise.
-    Auto,
-    /// Nishita's count: how many faces are in front, changed where lines cross contours. Edges of bodies that
-    /// reach into each other, and strokes, may run through faces, which contours do not tell; they are clipped.
-    Count,
-    /// Every straight edge is clipped against every face in front of it; curved ones are counted.
-    Clip,
 }
 
 /// How a drawing is wanted.

@@ -41,6 +41,18 @@ pub fn spans(steps: &mut [Step], start: i32, dust: f64, out: &mut Vec<Span>) {
     }
 }
 
+/// Makes one span of neighbours that are hidden, by however many faces: of order 1.
+pub fn unite(spans: &mut Vec<Span>) {
+    spans.iter_mut().for_each(|span| span.order = span.order.min(1));
+    spans.dedup_by(|span, before| {
+        let alike = span.order == before.order;
+        if alike {
+            before.to = span.to;
+        }
+        alike
+    });
+}
+
 /// Appends a span, or lengthens the last one from place `first` on when the order stays the same.
 fn append(out: &mut Vec<Span>, first: usize, span: Span) {
     match out[first..].last_mut() {
@@ -65,6 +77,15 @@ mod tests {
         spans(&mut steps, 0, 1e-12, &mut out);
         let expected = [(0.0, 0.25, 0), (0.25, 0.75, 1), (0.75, 1.0, 0)];
         assert_eq!(out.iter().map(|s| (s.from, s.to, s.order)).collect::<Vec<_>>(), expected);
+    }
+
+    #[test]
+    fn hidden_spans_are_one_where_they_are_not_counted() {
+        let span = |from, to, order| Span { from, to, order };
+        let mut spans =
+            vec![span(0.0, 0.2, 0), span(0.2, 0.3, 1), span(0.3, 0.7, 4), span(0.7, 1.0, 0)];
+        unite(&mut spans);
+        assert_eq!(spans, [span(0.0, 0.2, 0), span(0.2, 0.7, 1), span(0.7, 1.0, 0)]);
     }
 
     #[test]

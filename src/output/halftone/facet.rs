@@ -87,7 +87,7 @@ fn of_body(number: u32, body: &Body) -> Vec<Facet> {
         let number = (number, face.index() as u32);
         let facet = |loops, bend| Facet { face: number, loops, normal, bend, color, open };
         match face.origin().surface {
-            Surface::Facets => {
+            Surface::Smooth | Surface::Facets => {
                 facets.extend(triangles(mesh, face).into_iter().filter_map(|triangle| {
                     let at = triangle.map(|c| mesh.points[c as usize]);
                     let normal = (at[1] - at[0]).cross(at[2] - at[0]).try_normalize()?;
@@ -139,6 +139,11 @@ fn is_open(mesh: &PolyMesh) -> bool {
     edges.values().any(|&count| count != 0)
 }
 
+/// Whether facets stand for a surface themselves.
+fn is_rough(surface: Surface) -> bool {
+    matches!(surface, Surface::Smooth | Surface::Facets)
+}
+
 /// The directions of the faces around each corner, for faces of surfaces without a closed form.
 struct Normals {
     /// Of every face: its area times its normal, twice.
@@ -151,7 +156,7 @@ impl Normals {
     fn of(mesh: &PolyMesh) -> Normals {
         let mut around: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
         let areas = mesh.faces().map(|face| face.area_vector()).collect();
-        for face in mesh.faces().filter(|f| f.origin().surface == Surface::Facets) {
+        for face in mesh.faces().filter(|f| is_rough(f.origin().surface)) {
             for &corner in face.loops().flatten() {
                 around.entry(corner).or_default().push(face.index() as u32);
             }

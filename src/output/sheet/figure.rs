@@ -154,6 +154,8 @@ fn layer(line: &Line) -> Layer {
         (Class::Centre, _) => Layer::Center,
         (Class::Visible, Kind::Pattern) => Layer::Pattern,
         (Class::Visible, Kind::Free) => Layer::Free,
+        (Class::Visible, Kind::Upper) => Layer::Upper,
+        (Class::Visible, Kind::Lower) => Layer::Lower,
         (Class::Visible, _) => Layer::Visible,
     }
 }

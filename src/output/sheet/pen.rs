@@ -13,6 +13,10 @@ pub enum Layer {
     Pattern,
     /// Lines in space.
     Free,
+    /// Grid lines of a surface seen on its lower side.
+    Lower,
+    /// Grid lines of a surface seen on its upper side.
+    Upper,
     /// Visible edges and contours.
     Visible,
     /// Outlines of cut faces.
@@ -31,11 +35,13 @@ pub enum Layer {
 
 impl Layer {
     /// All of them, from the lowest to the topmost.
-    pub const ALL: [Layer; 11] = [
+    pub const ALL: [Layer; 13] = [
         Layer::Hatch,
         Layer::Hidden,
         Layer::Pattern,
         Layer::Free,
+        Layer::Lower,
+        Layer::Upper,
         Layer::Visible,
         Layer::Section,
         Layer::Cutting,
@@ -52,6 +58,8 @@ impl Layer {
             Layer::Hidden => "hidden",
             Layer::Pattern => "pattern",
             Layer::Free => "free",
+            Layer::Lower => "lower",
+            Layer::Upper => "upper",
             Layer::Visible => "visible",
             Layer::Section => "section",
             Layer::Cutting => "cutting",
@@ -77,7 +85,8 @@ impl Layer {
             Layer::Cutting => (0.5, &CHAIN),
             Layer::Free | Layer::Title => (0.35, &[]),
             Layer::Frame => (0.7, &[]),
-            Layer::Hatch | Layer::Pattern | Layer::Dimension => (0.25, &[]),
+            Layer::Lower => (0.13, &[]),
+            Layer::Hatch | Layer::Pattern | Layer::Upper | Layer::Dimension => (0.25, &[]),
         };
         let dash = dash.iter().map(|part| part * width).collect();
         Pen { width, dash, color: BLACK }

@@ -76,6 +76,32 @@ fn figures_on_faces_move_and_end_with_them() {
 }
 
 #[test]
+fn figures_are_laid_on_round_faces() {
+    let found = lengths(
+        "can = cylinder(10, 20)
+         view bare = can.view(from = FRONT)
+         around = can.draw_on({ at = [0, -10, 10] }, polyline([[-3, 0], [3, 0]]))
+         view seen = around.view(from = FRONT)
+         view behind = around.view(from = BACK)
+         view upright = can.draw_on({ at = [0, -10, 10] }, polyline([[1, -3], [1, 30]])).move(x = 5).view(from = FRONT)
+         ball = sphere(10)
+         view pole = ball.view(from = TOP)
+         view ring = ball.draw_on({ at = [0, 0, 10] }, circle(5)).view(from = TOP)",
+    );
+    let close = |found: f64, known: f64| assert!((found - known).abs() < 0.05, "{found} {known}");
+    let bare = found[0][0];
+    // An arc of 6 seen from the front.
+    close(found[1][0] - bare, 20.0 * libm::sin(0.3));
+    close(found[2][0], bare);
+    close(found[2][1] - found[0][1], 20.0 * libm::sin(0.3));
+    // From 7 to the rim at 20.
+    close(found[3][0] - bare, 13.0);
+    // Lengths from the pole are kept on the sphere, whose facets cut corners.
+    let ring = std::f64::consts::TAU * 10.0 * libm::sin(0.5);
+    assert!(near(found[5][0] - found[4][0], ring, 0.01), "{:?}", found[5]);
+}
+
+#[test]
 fn free_arcs_have_the_length_of_their_curve() {
     let quarter = 20.0 * std::f64::consts::FRAC_PI_2;
     let found = lengths(

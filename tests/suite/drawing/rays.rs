@@ -7,7 +7,9 @@ use katachi::{
         Polyhedron,
         primitive::{cuboid, sphere},
     },
-    output::drawing::{Camera, Class, Drawing, Method, Segment},
+    output::drawing::{
+        Camera, Class, Drawing, Hidden, Method, Options, Scene, Segment, visible_lines,
+    },
 };
 
 use super::scenes::{drawn, near, union};
@@ -235,7 +237,9 @@ fn the_order_counts_the_faces_in_front() {
     let solids = [wall(0.0), wall(10.0), wall(20.0), small];
     let camera = Camera::parallel(dvec3(0.01, -1.0, 0.02)).expect("a direction");
     for method in [Method::Auto, Method::Count, Method::Clip] {
-        let drawing = drawn(&solids, &camera, method);
+        let options = Options { method, hidden: Hidden::Depth(9), ..Options::default() };
+        let scene = Scene::of(solids.iter().map(Polyhedron::mesh));
+        let drawing = visible_lines(&scene, &camera, &options);
         let orders = drawing.lines.iter().filter(|l| l.id == 3).map(|l| l.order);
         let orders: Vec<u32> = orders.collect();
         assert!(orders.iter().all(|o| [3, 4].contains(o)), "{method:?}: {orders:?}");

@@ -133,6 +133,10 @@ impl<'a> Labels<'a> {
         *self.numbers.entry((leaf, face.origin_index())).or_insert_with(|| {
             let mut origin = face.origin().clone();
             origin.surface = origin.surface.placed(&source.full);
+            if origin.surface == Surface::Smooth {
+                origins.push(origin);
+                return origins.len() as u32 - 1;
+            }
             let near = self.near.entry(cell(&origin.surface)).or_default();
             let known = near.iter().copied().find(|&n| is_alike(&origins[n as usize], &origin));
             known.unwrap_or_else(|| {

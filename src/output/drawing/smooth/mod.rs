@@ -6,9 +6,14 @@
 //! So it is cut off at the borders of the face by itself. Chords are halved until they keep to the bound;
 //! what hides is the front part of each facet.
 
+mod contour;
+mod course;
+
 use std::collections::BTreeMap;
 
 use glam::DVec3;
+
+use course::Tip;
 
 use super::{
     cells::around,
@@ -16,16 +21,12 @@ use super::{
     frustum::Visible,
     lattice::Plane,
     links::{Link, NONE, each_side},
-    model::{CHORD, Edge, Facet, Model, Outline},
+    model::{CHORD, Edge, FOLDED, Facet, Model, Outline},
     outline::FARTHEST,
     patches::{Patch, Patches},
     scene::Kind,
 };
 use crate::geom::{FaceRef, PolyMesh, Surface};
-
-/// A surface is seen edge-on where the sine of the angle to the sight line is below this: rounding leaves
-/// contours that run along rows of corners that far off.
-const EDGE_ON: f64 = 1e-9;
 
 /// Faces meet smoothly where the sine of the angle between them is below this.
 const TANGENT: f64 = 1e-4;
@@ -60,6 +61,8 @@ struct Smooth<'a> {
     /// Sides of the front part of faces.
     parts: Vec<(u32, [u32; 2])>,
     passes: Vec<Pass>,
+    /// Sides of faces at the apex of their cone.
+    tips: Vec<Tip>,
     /// Numbers of curves, by their patches.
     curves: BTreeMap<(u32, u32), u32>,
     /// The face of each outline added, from the first one on.
@@ -91,6 +94,7 @@ pub fn add_body(
         fields: vec![],
         parts: vec![],
         passes: vec![],
+        tips: vec![],
         curves: BTreeMap::new(),
         outline_faces: vec![],
     };
@@ -98,6 +102,7 @@ pub fn add_body(
     smooth.find_front();
     let first = smooth.model.outlines.len();
     links.iter().for_each(|link| smooth.add_link(link));
+    smooth.pass_tips();
     smooth.close_fronts();
     smooth.add_facets(first);
     true
@@ -146,133 +151,53 @@ impl Smooth<'_> {
         self.front = faces.map(front).collect();
     }
 
-    /// How far a round surface is turned to the eye at a point: the sine of an angle, 0 on the contour.
-    fn turned(&mut self, patch: u32, point: u32) -> f64 {
-        let known = point.checked_sub(self.base).map_or(usize::MAX, |i| i as usize);
-        match self.turns.get(known) {
-            Some(&(of, turn)) if of == patch => return turn,
-            _ => {}
-        }
-        let turn = self.turn(patch, point);
-        if let Some(slot) = self.turns.get_mut(known) {
-            *slot = (patch, turn);
-        }
-        turn
-    }
-
-    fn turn(&self, patch: u32, point: u32) -> f64 {
-        let Patch { field, outward } = self.patches.list[patch as usize];
-        let p = self.model.space[point as usize];
-        let sine = field.slope(p).1.dot(self.model.camera.sight(p).normalize()) * outward;
-        if sine.abs() < EDGE_ON { 0.0 } else { sine }
-    }
-
-    /// Whether each end of a side of a face is in front.
-    fn ends_front(&mut self, face: u32, ends: [u32; 2]) -> [bool; 2] {
-        if face == NONE {
-            return [false; 2];
-        }
-        let patch = self.patches.of_face[face as usize];
-        if self.patches.is_round(patch) {
-            ends.map(|p| self.turned(patch, p) > 0.0)
-        } else {
-            [self.front[face as usize]; 2]
-        }
-    }
-
     fn add_link(&mut self, link: &Link) {
         let ends = [self.base + link.a, self.base + link.b];
-        let same = link.right != NONE && {
-            let [l, r] = [link.left, link.right].map(|f| self.patches.of_face[f as usize]);
-            l == r && self.patches.is_round(l)
-        };
-        let left = self.ends_front(link.left, ends);
-        if same {
-            self.add_seam(link, ends, left);
+        let patches = [link.left, link.right]
+            .map(|f| if f == NONE { NONE } else { self.patches.of_face[f as usize] });
+        if patches[0] == patches[1] && self.patches.is_round(patches[0]) {
+            self.add_seam(link, patches[0], ends);
         } else {
-            let right = self.ends_front(link.right, ends);
-            self.add_sharp(link, ends, left, right);
+            self.add_sharp(link, patches, ends);
         }
     }
 
-    /// A side between facets of one surface: only the contour may pass it.
-    fn add_seam(&mut self, link: &Link, [a, b]: [u32; 2], front: [bool; 2]) {
-        let mut part = |ends: [u32; 2]| {
-            if ends[0] != ends[1] {
-                self.parts.push((link.left, ends));
-                self.parts.push((link.right, [ends[1], ends[0]]));
-            }
-        };
-        match front {
-            [false, false] => {}
-            [true, true] => part([a, b]),
-            [leaves, _] => {
-                let patch = self.patches.of_face[link.left as usize];
-                let at = self.contour_point(patch, None, [a, b]);
-                self.parts_at_pass(link, [a, b], at, leaves);
+    /// A side between facets of one surface: only the contour may pass it or run along it.
+    fn add_seam(&mut self, link: &Link, patch: u32, ends: [u32; 2]) {
+        self.note_tip(link.right, patch, ends, true);
+        let course = self.course(link.left, NONE, ends, false);
+        if let Some(at) = course.change.filter(|_| !course.grazed) {
+            self.passes.push(Pass { face: link.right, at, out: !course.front });
+        }
+        for ([a, b], front) in course.stretches(ends) {
+            match (course.grazed, front) {
+                (true, true) => self.add_border(link.left, [a, b]),
+                (true, false) => self.add_border(link.right, [b, a]),
+                (false, true) => {
+                    self.parts.push((link.left, [a, b]));
+                    self.parts.push((link.right, [b, a]));
+                }
+                (false, false) => {}
             }
         }
-    }
-
-    fn parts_at_pass(&mut self, link: &Link, [a, b]: [u32; 2], at: u32, leaves: bool) {
-        let ends = if leaves { [a, at] } else { [at, b] };
-        if ends[0] != ends[1] {
-            self.parts.push((link.left, ends));
-            self.parts.push((link.right, [ends[1], ends[0]]));
-        }
-        self.passes.push(Pass { face: link.left, at, out: leaves });
-        self.passes.push(Pass { face: link.right, at, out: !leaves });
-    }
-
-    /// The point of a patch's contour between two points of the patch, one of which is in front; on the curve with
-    /// another patch if there is one.
-    fn contour_point(&mut self, patch: u32, other: Option<u32>, [a, b]: [u32; 2]) -> u32 {
-        let [s, t] = [a, b].map(|p| self.turned(patch, p));
-        if s == 0.0 || t == 0.0 {
-            return if s == 0.0 { a } else { b };
-        }
-        let field = self.patches.list[patch as usize].field;
-        let [p, q] = [a, b].map(|i| self.model.space[i as usize]);
-        let start = p.lerp(q, s / (s - t));
-        let contour = Curve([Constraint::On(field), Constraint::Contour(field)]);
-        let (camera, reach) = (&self.model.camera, p.distance(q));
-        let found = match other {
-            Some(other) => {
-                let other = Constraint::On(self.patches.list[other as usize].field);
-                contour.meeting(other, camera, start, reach)
-            }
-            None => {
-                let across = (q - p).cross(field.slope(start).1);
-                contour.near(camera, start, across, reach)
-            }
-        };
-        self.model.add_point(found.unwrap_or(start))
     }
 
     /// An edge between two surfaces, or a border.
-    fn add_sharp(&mut self, link: &Link, ends: [u32; 2], left: [bool; 2], right: [bool; 2]) {
-        let patches = [link.left, link.right]
-            .map(|f| if f == NONE { NONE } else { self.patches.of_face[f as usize] });
-        let mut nodes = vec![(ends[0], left[0], right[0])];
-        let passes = [(0, left), (1, right)].map(|(side, front)| {
-            (front[0] != front[1]).then(|| {
-                let other = patches[1 - side];
-                let at = self.contour_point(patches[side], (other != NONE).then_some(other), ends);
-                self.passes.push(Pass {
-                    face: [link.left, link.right][side],
-                    at,
-                    out: front[0] == (side == 0),
-                });
-                (side, at)
-            })
-        });
+    fn add_sharp(&mut self, link: &Link, patches: [u32; 2], ends: [u32; 2]) {
+        let courses = [
+            self.course(link.left, patches[1], ends, false),
+            self.course(link.right, patches[0], ends, true),
+        ];
+        let mut nodes = vec![(ends[0], courses.map(|c| c.front))];
         let [p, q] = ends.map(|i| self.model.space[i as usize]);
         let along = |at: u32| (q - p).dot(self.model.space[at as usize]);
-        let mut passes: Vec<(usize, u32)> = passes.into_iter().flatten().collect();
-        passes.sort_by(|a, b| along(a.1).total_cmp(&along(b.1)));
-        for (side, at) in passes {
-            let (_, l, r) = nodes[nodes.len() - 1];
-            nodes.push(if side == 0 { (at, !l, r) } else { (at, l, !r) });
+        let changes = [0, 1].map(|side| courses[side].change.map(|at| (side, at)));
+        let mut changes: Vec<(usize, u32)> = changes.into_iter().flatten().collect();
+        changes.sort_by(|a, b| along(a.1).total_cmp(&along(b.1)));
+        for (side, at) in changes {
+            let mut front = nodes[nodes.len() - 1].1;
+            front[side] = !front[side];
+            nodes.push((at, front));
         }
         let drawn = if link.right == NONE {
             !self.body.is_cut(link.a, link.b)
@@ -280,10 +205,23 @@ impl Smooth<'_> {
             self.is_sharp(link, patches, ends)
         };
         for i in 0..nodes.len() {
-            let (from, l, r) = nodes[i];
+            let (from, front) = nodes[i];
             let to = nodes.get(i + 1).map_or(ends[1], |n| n.0);
-            if from != to {
-                self.add_stretch(link, patches, [from, to], [l, r], drawn);
+            if from == to {
+                continue;
+            }
+            match (front, courses.map(|c| c.grazed)) {
+                ([true, false], [true, _]) if !drawn => self.add_border(link.left, [from, to]),
+                ([false, true], [_, true]) if !drawn => self.add_border(link.right, [to, from]),
+                (_, grazed) => {
+                    if front[0] && grazed[0] {
+                        self.pass_along(link.left, [from, to]);
+                    }
+                    if front[1] && grazed[1] {
+                        self.pass_along(link.right, [to, from]);
+                    }
+                    self.add_stretch(link, patches, [from, to], front, drawn);
+                }
             }
         }
     }
@@ -291,26 +229,28 @@ impl Smooth<'_> {
     /// Whether two patches meet at an angle that is drawn.
     fn is_sharp(&self, link: &Link, patches: [u32; 2], ends: [u32; 2]) -> bool {
         let faces = [link.left, link.right].map(|f| self.mesh.face(f as usize));
-        let facets = faces.iter().any(|f| f.origin().surface == Surface::Facets);
+        let same = faces[0].origin_index() == faces[1].origin_index();
+        let crease = match faces.map(|f| f.origin().surface) {
+            [Surface::Smooth, _] if same => Some(FOLDED),
+            [Surface::Smooth | Surface::Facets, _] | [_, Surface::Smooth | Surface::Facets] => {
+                Some(self.crease)
+            }
+            _ => None,
+        };
         ends.iter().any(|&p| {
             let p = self.model.space[p as usize];
             let [one, other] = patches.map(|patch| self.patches.list[patch as usize]);
             let [m, n] = [one, other].map(|patch| patch.field.slope(p).1 * patch.outward);
-            if facets {
-                return m.dot(n) < self.crease;
+            if let Some(crease) = crease {
+                return m.dot(n) < crease;
             }
             let sine = m.cross(n).length();
             let turns_back = m.dot(n) <= 0.0;
             turns_back
-                || sine > TANGENT && (m.dot(n) < self.crease || !self.touch(one, other, p, sine))
+                || sine > TANGENT
+                    && (m.dot(n) < self.crease
+                        || !touch([one, other], p, sine, self.model.bound / CHORD))
         })
-    }
-
-    /// Whether two surfaces that meet at an angle are tangent up to the modeller's tolerance: moved by that, they
-    /// would touch along the edge. Rounded edges made of chords meet what they round so.
-    fn touch(&self, one: Patch, other: Patch, p: DVec3, sine: f64) -> bool {
-        let bend: f64 = [one, other].iter().map(|patch| 1.0 / patch.field.local(p).radius()).sum();
-        sine * sine <= 2.0 * bend * self.model.bound / CHORD
     }
 
     /// A stretch of an edge along which both faces keep to the front or the back.
@@ -403,77 +343,6 @@ impl Smooth<'_> {
         self.halve(curve, [middle, b], depth - 1, nodes);
     }
 
-    /// Closes the front part of every face that a contour runs through, along the contour.
-    fn close_fronts(&mut self) {
-        let mut passes = std::mem::take(&mut self.passes);
-        passes.sort_by_key(|p| p.face);
-        for group in passes.chunk_by(|a, b| a.face == b.face) {
-            let mut back: Vec<u32> = group.iter().filter(|p| !p.out).map(|p| p.at).collect();
-            for leaving in group.iter().filter(|p| p.out) {
-                let from = self.model.space[leaving.at as usize];
-                let distance = |at: &u32| self.model.space[*at as usize].distance_squared(from);
-                let near = (0..back.len())
-                    .min_by(|&i, &j| distance(&back[i]).total_cmp(&distance(&back[j])));
-                let Some(near) = near else { break };
-                let to = back.swap_remove(near);
-                if to != leaving.at {
-                    self.add_contour(leaving.face, [leaving.at, to]);
-                }
-            }
-        }
-    }
-
-    /// The contour through a face from where it leaves the front to where it comes back.
-    fn add_contour(&mut self, face: u32, ends: [u32; 2]) {
-        let patch = self.patches.of_face[face as usize];
-        let curve = self.curve(patch, patch);
-        let nodes = self.refined(curve, ends);
-        let nodes = self.with_cusps(patch, curve, nodes);
-        for pair in nodes.windows(2) {
-            let [a, b] = [pair[0], pair[1]];
-            self.parts.push((face, [a, b]));
-            self.add_outline(face, [a, b], curve);
-            let (kind, id) = (Kind::Contour, self.id);
-            self.model.edges.push(Edge { a, b, kind, id, curve, back: false });
-        }
-    }
-
-    /// How a surface bends along the sight line at a point: at a cusp of the contour it does not.
-    fn bend(&self, field: &Field, p: DVec3) -> f64 {
-        field.local(p).bend_along(self.model.camera.sight(p).normalize())
-    }
-
-    /// Points of a contour with its cusps between them.
-    fn with_cusps(&mut self, patch: u32, curve: u32, nodes: Vec<u32>) -> Vec<u32> {
-        let field = self.patches.list[patch as usize].field;
-        let curve = self.model.curves[curve as usize];
-        let mut out = vec![nodes[0]];
-        for pair in nodes.windows(2) {
-            let [p, q] = [pair[0], pair[1]].map(|i| self.model.space[i as usize]);
-            if self.bend(&field, p) * self.bend(&field, q) < 0.0
-                && let Some(cusp) = self.cusp(&field, &curve, p, q)
-            {
-                let cusp = self.model.add_point(cusp);
-                self.model.cusps.push(cusp);
-                out.push(cusp);
-            }
-            out.push(pair[1]);
-        }
-        out
-    }
-
-    /// The cusp between two points of a contour, by halving.
-    fn cusp(&self, field: &Field, curve: &Curve, p: DVec3, q: DVec3) -> Option<DVec3> {
-        let on = |t: f64| curve.near(&self.model.camera, p.lerp(q, t), q - p, p.distance(q));
-        let start = self.bend(field, p);
-        let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..f64::MANTISSA_DIGITS {
-            let middle = (low + high) / 2.0;
-            if self.bend(field, on(middle)?) * start > 0.0 { low = middle } else { high = middle }
-        }
-        on(low)
-    }
-
     /// Makes a facet of the front part of every face, and tells outlines their facet.
     fn add_facets(&mut self, first_outline: usize) {
         let parts = by_face(std::mem::take(&mut self.parts), self.mesh.face_count());
@@ -501,18 +370,25 @@ impl Smooth<'_> {
         let normal = self.patches.normals[face as usize];
         let on = self.model.space[(self.base + face_ref.outer()[0]) as usize];
         let plane = Plane { normal, offset: normal.dot(on) };
-        let patch = self.patches.list[self.patches.of_face[face as usize] as usize];
-        let field = if matches!(patch.field, Field::Round(_)) {
-            let slot = &mut self.fields[self.patches.of_face[face as usize] as usize];
-            if *slot == NONE {
-                self.model.fields.push(patch.field);
-                *slot = self.model.fields.len() as u32 - 1;
-            }
-            *slot
-        } else {
-            NONE
-        };
-        Facet { plane, sides, min, max, field }
+        let patch = self.patches.of_face[face as usize];
+        let mut corners =
+            self.model.sides[sides[0] as usize..sides[1] as usize].iter().map(|s| s[0]);
+        let first = self.model.sides[sides[0] as usize][0];
+        let corner = corners.find(|&c| !self.is_apex(patch, c)).unwrap_or(first);
+        Facet { plane, sides, min, max, field: self.field(patch), corner }
+    }
+
+    /// The place in the model of the surface of a patch, or [`NONE`] if it is flat.
+    fn field(&mut self, patch: u32) -> u32 {
+        if !self.patches.is_round(patch) {
+            return NONE;
+        }
+        let slot = &mut self.fields[patch as usize];
+        if *slot == NONE {
+            self.model.fields.push(self.patches.list[patch as usize].field);
+            *slot = self.model.fields.len() as u32 - 1;
+        }
+        *slot
     }
 }
 
@@ -528,4 +404,36 @@ fn by_face(parts: Vec<(u32, [u32; 2])>, faces: usize) -> Vec<(u32, [u32; 2])> {
         *place += 1;
     }
     sorted
+}
+
+/// Whether two surfaces that meet at an angle, given by its sine, are tangent up to a tolerance in mm: moved by that, they
+/// would touch along the edge. Rounded edges made of chords meet what they round so.
+fn touch(patches: [Patch; 2], p: DVec3, sine: f64, tolerance: f64) -> bool {
+    let bend: f64 = patches.iter().map(|patch| 1.0 / patch.field.local(p).radius()).sum();
+    sine * sine <= 2.0 * bend * tolerance
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn surfaces_touch_where_the_tolerance_makes_them_tangent() {
+        let radius = 2.0;
+        let rod = Surface::Cylinder { point: DVec3::ZERO, axis: DVec3::Z, radius };
+        let rod = Patch { field: Field::Round(rod), outward: 1.0 };
+        // A plane that cuts a cylinder this deep meets it at an angle whose cosine is 1 - depth / radius.
+        let meets = |depth: f64, tolerance: f64| {
+            let plane = Plane { normal: DVec3::Y, offset: radius - depth };
+            let plane = Patch { field: Field::Flat(plane), outward: 1.0 };
+            let sine = (1.0 - (1.0 - depth / radius).powi(2)).sqrt();
+            let p = DVec3::new(radius * sine, radius - depth, 0.0);
+            touch([plane, rod], p, sine, tolerance)
+        };
+        assert!(meets(0.04, 0.05) && !meets(0.06, 0.05));
+        assert!(meets(0.004, 0.005) && !meets(0.006, 0.005));
+        let flat =
+            Patch { field: Field::Flat(Plane { normal: DVec3::Y, offset: 0.0 }), outward: 1.0 };
+        assert!(!touch([flat, flat], DVec3::ZERO, 1e-3, 0.05));
+    }
 }
