@@ -21,7 +21,9 @@
 //! offset are true ones.
 
 mod algebra;
+mod apart;
 mod block;
+pub mod contour;
 mod lathe;
 mod local;
 mod outline;
@@ -33,6 +35,7 @@ mod triangle;
 use glam::DVec3;
 
 pub use self::{
+    apart::Apart,
     algebra::{Complement, Grown, Intersection, NotExact, Union},
     block::Cuboid,
     lathe::Lathe,

@@ -1,0 +1,240 @@
+//! The surface on which a function is zero, as triangles within a tolerance.
+//!
+//! Ju, T., Losasso, F., Schaefer, S., Warren, J.: *Dual contouring of hermite data*, 2002; Schaefer, S., Ju, T.,
+//! Warren, J.: *Manifold dual contouring*, 2007; Ju, T., Udeshi, T.: *Intersection-free contouring on an octree
+//! grid*, 2006.
+//!
+//! | papers | here | meaning |
+//! |---|---|---|
+//! | grid | [`octree`] | cells, halved where the surface is not told apart |
+//! | hermite data | `Sample` | a crossed edge's point and normal |
+//! | minimal edge | [`edges`] | an edge between four leaves |
+//! | vertex cluster | [`loops`] | a piece of the surface in a leaf |
+//! | QEF | [`vertex`] | the vertex where tangent planes meet |
+//! | hybrid polygon | [`surface`] | triangles around a crossed edge |
+//!
+//! # Departures
+//! The papers refine by flatness of their data. Here a cell is halved as long as bounds cannot tell that it is
+//! clear of the surface or that the surface passes it as one sheet ([`Look`]), and afterwards where a corner,
+//! the middle of an edge or of a triangle is farther from the surface than the tolerance. What is thicker than
+//! twice the tolerance holds a corner of the smallest cells, and so is found.
+//!
+//! Polygons are made through vertices alone, and cut at edges and faces only where [`Contour::part`] is told
+//! that triangles cross.
+
+mod edges;
+mod lattice;
+mod loops;
+mod octree;
+mod surface;
+mod vertex;
+
+use glam::DVec3;
+use rayon::prelude::*;
+use rustc_hash::{FxHashMap, FxHashSet};
+use thiserror::Error;
+
+use self::{octree::Octree, surface::Surface};
+use crate::geom::{Bounds, Origin, PolyMesh};
+
+/// What the surface does in a cell.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Look {
+    /// It stays away.
+    Clear,
+    /// It may pass as one sheet: along some direction the function grows everywhere.
+    Sheet,
+    /// Anything.
+    Unknown,
+}
+
+/// A function of space whose zeros are a surface, not positive inside.
+pub trait Level: Clone + Send + Sync {
+    /// Its value; NaN where it has none.
+    fn value(&self, p: DVec3) -> f64;
+
+    /// Its derivatives.
+    fn gradient(&self, p: DVec3) -> DVec3;
+
+    /// About how far a point near the surface is from it, mm, never negative.
+    fn off(&self, p: DVec3) -> f64 {
+        let (value, slope) = (self.value(p).abs(), self.gradient(p).length());
+        if value == 0.0 { 0.0 } else { value / slope }
+    }
+
+    /// What is sure about a cell.
+    fn look(&self, cell: &Bounds) -> Look;
+
+    /// A function that gives the same answers for the points of a cell, sooner.
+    fn within(&self, cell: &Bounds) -> Self;
+}
+
+/// Why a function has no surface.
+#[derive(Clone, Debug, Error)]
+pub enum ContourError {
+    /// The value is not a number.
+    #[error("the function has no value at ({}, {}, {}) mm", .at.x, .at.y, .at.z)]
+    NotANumber {
+        /// Where, mm.
+        at: DVec3,
+    },
+    /// The inside reaches the faces of the box.
+    #[error("the solid reaches beyond the box it is sought in, at ({}, {}, {}) mm", .at.x, .at.y, .at.z)]
+    Unbounded {
+        /// Where, mm.
+        at: DVec3,
+    },
+    /// Too many pieces.
+    #[error(
+        "a surface this fine needs about {found:.2e} pieces; the limit is {limit}, which a tolerance of {fitting:.3e} mm meets"
+    )]
+    TooFine {
+        /// Triangles or cells needed, about.
+        found: f64,
+        /// Those allowed.
+        limit: usize,
+        /// A tolerance that fits, mm.
+        fitting: f64,
+    },
+    /// Triangles that cannot be parted.
+    #[error("the surface crosses itself near ({}, {}, {}) mm however finely it is cut", .at.x, .at.y, .at.z)]
+    Crossed {
+        /// Where, mm.
+        at: DVec3,
+    },
+}
+
+impl ContourError {
+    fn too_fine(found: f64, tolerance: f64, fitting: f64) -> ContourError {
+        let fitting = fitting.max(tolerance * 1.1);
+        ContourError::TooFine { found, limit: octree::CELLS, fitting }
+    }
+}
+
+/// Triangles that a surface may have.
+pub const MOST_TRIANGLES: usize = 3_000_000;
+/// How often triangles are looked at and cells halved.
+const ROUNDS: usize = 40;
+
+/// A surface being made.
+#[derive(Debug)]
+pub struct Contour<L> {
+    tree: Octree<L>,
+    surface: Surface,
+    tolerance: f64,
+    /// Leaves whose polygons are cut.
+    cut: FxHashSet<u32>,
+}
+
+impl<L: Level> Contour<L> {
+    /// The zeros of a function in a box, within `tolerance` mm. The function must be positive on the faces of
+    /// the box, whose sides must be above 0. Fails where it has no value, where the inside reaches the box, and
+    /// where there would be more than [`MOST_TRIANGLES`].
+    pub fn new(level: L, within: &Bounds, tolerance: f64) -> Result<Contour<L>, ContourError> {
+        let tree = Octree::new(level, within, tolerance)?;
+        let (surface, cut) = (Surface::default(), FxHashSet::default());
+        let mut contour = Contour { tree, surface, tolerance, cut };
+        contour.refine()?;
+        Ok(contour)
+    }
+
+    /// Whether there is no surface.
+    pub fn is_empty(&self) -> bool {
+        self.surface.triangles.is_empty()
+    }
+
+    /// The surface as a mesh of triangles, closed and manifold by index.
+    pub fn mesh(&self, origin: Origin) -> PolyMesh {
+        let mut mesh = PolyMesh::with_points(self.surface.points.clone());
+        let origin = mesh.add_origin(origin);
+        for triangle in &self.surface.triangles {
+            let plane = mesh.add_plane();
+            mesh.push_face(&[*triangle], plane, origin);
+        }
+        mesh.drop_unused_points();
+        mesh
+    }
+
+    /// Cuts the polygons where triangles cross, given a place of each crossing; where they are cut already,
+    /// halves the cells.
+    pub fn part(&mut self, places: &[DVec3]) -> Result<(), ContourError> {
+        let leaves: Vec<u32> = places.iter().map(|&p| self.tree.leaf(p)).collect();
+        let (again, fresh): (Vec<u32>, Vec<u32>) =
+            leaves.into_iter().partition(|leaf| self.cut.contains(leaf));
+        if let Some(place) = again.iter().position(|&c| self.tree.cells[c as usize].level + 1 >= lattice::LEVELS) {
+            return Err(ContourError::Crossed { at: places[place] });
+        }
+        self.cut.extend(fresh);
+        self.tree.split(again)?;
+        self.refine()
+    }
+
+    /// Halves cells until the surface is within the tolerance and manifold.
+    fn refine(&mut self) -> Result<(), ContourError> {
+        for _ in 0..ROUNDS {
+            self.surface = Surface::new(&self.tree, self.tolerance, &self.cut);
+            self.check_size()?;
+            let coarse = self.coarse();
+            if coarse.is_empty() && !self.cut_doubled() {
+                return Ok(());
+            }
+            self.tree.split(coarse)?;
+        }
+        Ok(())
+    }
+
+    fn check_size(&self) -> Result<(), ContourError> {
+        let found = self.surface.triangles.len();
+        if found <= MOST_TRIANGLES {
+            return Ok(());
+        }
+        let worst = self.surface.triangles.par_iter().map(|t| (self.deviation(t) / self.tolerance).clamp(1.0, 1e3));
+        let needed: f64 = worst.collect::<Vec<f64>>().iter().sum();
+        Err(ContourError::TooFine {
+            found: needed,
+            limit: MOST_TRIANGLES,
+            fitting: self.tolerance * (needed / MOST_TRIANGLES as f64).max(1.1),
+        })
+    }
+
+    /// The cells of triangles that are too far from the surface.
+    fn coarse(&self) -> Vec<u32> {
+        let far = |t: &[u32; 3]| {
+            let cells = t.map(|i| self.surface.cells[i as usize]);
+            let free = |c: &u32| self.tree.may_split(*c);
+            if !cells.iter().any(free) || self.deviation(t) <= self.tolerance {
+                return None;
+            }
+            let level = |c: &u32| self.tree.cells[*c as usize].level;
+            let least = cells.iter().map(level).min();
+            Some(cells.map(|c| (Some(level(&c)) == least && free(&c)).then_some(c)))
+        };
+        let found: Vec<[Option<u32>; 3]> =
+            self.surface.triangles.par_iter().filter_map(far).collect();
+        let mut cells: Vec<u32> = found.into_iter().flatten().flatten().collect();
+        cells.sort_unstable();
+        cells.dedup();
+        cells
+    }
+
+    /// How far corners, middles of edges and the middle of a triangle are from the surface at most.
+    fn deviation(&self, triangle: &[u32; 3]) -> f64 {
+        let [a, b, c] = triangle.map(|i| self.surface.points[i as usize]);
+        let places = [(a + b + c) / 3.0, (a + b) / 2.0, (b + c) / 2.0, (c + a) / 2.0, a, b, c];
+        places.iter().map(|p| self.tree.off(*p)).fold(0.0, f64::max)
+    }
+
+    /// Cuts the polygons that share an edge with more than one other. Whether there are such.
+    fn cut_doubled(&mut self) -> bool {
+        let mut sides: FxHashMap<(u32, u32), u32> = FxHashMap::default();
+        for t in &self.surface.triangles {
+            (0..3).for_each(|k| *sides.entry((t[k], t[(k + 1) % 3])).or_default() += 1);
+        }
+        let doubled = sides.iter().filter(|(_, n)| **n > 1).map(|(side, _)| *side);
+        let cells: Vec<u32> =
+            doubled.flat_map(|(a, b)| [a, b].map(|i| self.surface.cells[i as usize])).collect();
+        let before = self.cut.len();
+        self.cut.extend(cells);
+        self.cut.len() > before
+    }
+}
