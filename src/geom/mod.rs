@@ -2,8 +2,10 @@
 
 pub mod bounds;
 pub mod bvh;
+pub mod charge;
 pub mod curved_grid;
 pub mod flatten;
+pub mod formula;
 pub mod mesh;
 pub mod nearest;
 pub mod orient;
@@ -25,7 +27,9 @@ pub mod trig;
 pub mod wide;
 
 pub use bounds::Bounds;
+pub use charge::{Charge, Falloff};
 pub use curved_grid::{CurvedGrid, GridError};
+pub use formula::Formula;
 pub use mesh::{FaceRef, Origin, PolyMesh};
 pub use placement::Placement;
 pub use raster::Raster;

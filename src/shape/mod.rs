@@ -13,5 +13,5 @@ mod stretched;
 pub use drawing::{CurveSpec, PageSpec, ViewSpec};
 pub use geometry::{Geometry, GeometryError, Measures};
 pub use graph::ShapeGraph;
-pub use node::{Kind, Node, ShapeId};
+pub use node::{Kind, Node, ShapeId, SphereTest};
 pub use stretched::Stretched;

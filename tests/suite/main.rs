@@ -12,6 +12,7 @@ mod formats;
 mod golden;
 mod grammar;
 mod laws;
+mod level_sets;
 mod made;
 mod openscad;
 mod readers;

@@ -8,8 +8,10 @@
 //! solid grown, found by exact set operations. Shrinking is growing the complement.
 //!
 //! Whether the result is right is not taken on trust: [`Polyhedral`] tells the true distance of its corners,
-//! the middles of its edges and of its triangles.
+//! the middles of its edges and of its triangles. Where the surface lies over itself at too many places to be freed
+//! of its crossings, the distance itself is contoured ([`apart`]), with more triangles.
 
+mod apart;
 mod arc;
 mod figure;
 mod fillet;
@@ -24,14 +26,17 @@ use glam::{DMat3, DVec3};
 use thiserror::Error;
 
 use self::{
+    apart::apart,
     figure::Measure,
     proof::missing,
     surface::{Raw, TooMany},
 };
 pub use self::{
+    apart::tested,
     fillet::fillet,
     proof::{Deviation, deviation},
 };
+use super::contour::LevelSetError;
 use crate::{
     geom::{Placement, Surface, Tolerance, sides},
     kernel::{
@@ -74,6 +79,9 @@ pub enum OffsetError {
     /// The set operation that frees the surface of its crossings failed.
     #[error(transparent)]
     Boolean(#[from] BooleanError),
+    /// The level set that stands in for such a surface failed.
+    #[error(transparent)]
+    LevelSet(#[from] LevelSetError),
     /// The result is farther from the distance than the tolerance.
     #[error("the offset is off by {found:.3e} mm near ({}, {}, {}); the tolerance is {allowed} mm", .at.x, .at.y, .at.z)]
     Inexact {
@@ -117,15 +125,17 @@ pub fn offset(
     if by == 0.0 || solid.is_empty() {
         return Ok(solid.clone());
     }
+    // What is made of pieces is exact and has few triangles; what is too much for that is contoured.
     // Errors of chords and joints may add up: then once more, finer.
     let mut finer = tolerance;
-    for _ in 1..TRIES {
+    for _ in 0..TRIES {
         match offset_once(solid, by, finer, tolerance) {
             Err(OffsetError::Inexact { .. }) => finer = finer.half(),
+            Err(OffsetError::Crowded { .. } | OffsetError::Boolean(_)) => break,
             done => return done,
         }
     }
-    offset_once(solid, by, finer, tolerance)
+    apart(solid, by, tolerance)
 }
 
 /// How often an offset is made, each time with half of the tolerance.
@@ -170,7 +180,10 @@ fn extended(solid: &Polyhedron, by: f64, tolerance: Tolerance) -> Result<Polyhed
         return Ok(solid.clone());
     }
     let measure = Measure { round: false, ..measure(by, tolerance) };
-    uncrossed(raw_surface(solid, by, measure, tolerance)?)
+    match raw_surface(solid, by, measure, tolerance).and_then(uncrossed) {
+        Err(OffsetError::Crowded { .. } | OffsetError::Boolean(_)) => offset(solid, by, tolerance),
+        done => done,
+    }
 }
 
 fn measure(by: f64, tolerance: Tolerance) -> Measure {

@@ -5,6 +5,7 @@
 mod colors;
 mod constants;
 mod curves;
+mod fields;
 mod files;
 mod lists;
 mod mathematics;
@@ -49,6 +50,7 @@ pub fn find(name: &str) -> Option<Native> {
         constants::TABLE,
         curves::TABLE,
         lists::TABLE,
+        fields::TABLE,
         files::TABLE,
         mathematics::TABLE,
         measures::TABLE,

@@ -47,6 +47,11 @@ impl<'a> Apart<'a> {
         Apart { whole, by, near: None }
     }
 
+    /// The signed distance of a point of the cell from the mesh.
+    pub(super) fn distance(&self, p: DVec3) -> f64 {
+        self.foot(p).1
+    }
+
     /// The point of the boundary nearest to a point of the cell, and the signed distance.
     fn foot(&self, p: DVec3) -> (DVec3, f64) {
         let Some((middle, list)) = &self.near else {

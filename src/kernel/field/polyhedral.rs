@@ -32,6 +32,8 @@ pub struct Nearest {
     pub distance: f64,
     /// What it lies on, by numbers of the mesh.
     pub feature: Feature,
+    /// A face of the mesh that it lies on.
+    pub face: u32,
     /// The direction that tells the sides apart there; not of unit length, zero where it says nothing.
     pub normal: DVec3,
 }
@@ -129,7 +131,35 @@ impl Polyhedral {
             true => !self.surrounds(p),
             false => (p - point).dot(normal) >= 0.0,
         };
-        Nearest { point, distance: if outside { apart } else { -apart }, feature, normal }
+        Nearest {
+            point,
+            distance: if outside { apart } else { -apart },
+            feature,
+            face: facet.face,
+            normal,
+        }
+    }
+
+    /// A point of every piece of the boundary, in the order of the triangles.
+    pub(super) fn pieces(&self) -> Vec<DVec3> {
+        let mut joined: Vec<u32> = (0..self.points.len() as u32).collect();
+        let first_of = |joined: &mut [u32], mut i: u32| {
+            while joined[i as usize] != i {
+                joined[i as usize] = joined[joined[i as usize] as usize];
+                i = joined[i as usize];
+            }
+            i
+        };
+        for facet in &self.facets {
+            let [a, b, c] = facet.corners.map(|corner| first_of(&mut joined, corner));
+            let least = a.min(b).min(c);
+            [a, b, c].iter().for_each(|i| joined[*i as usize] = least);
+        }
+        let roots = self.facets.iter().map(|f| first_of(&mut joined, f.corners[0]));
+        let mut roots: Vec<u32> = roots.collect();
+        roots.sort_unstable();
+        roots.dedup();
+        roots.into_iter().map(|i| self.points[i as usize]).collect()
     }
 
     /// Whether the boundary surrounds a point, by its solid angle.

@@ -69,7 +69,10 @@ impl<L: Level> Walk<'_, L> {
                 self.face([low, high], axis);
             }
             for half in 0..2 {
-                self.edge([0, 1, 2, 3].map(|q| self.child(cell, axis, [half, q & 1, q >> 1])), axis);
+                self.edge(
+                    [0, 1, 2, 3].map(|q| self.child(cell, axis, [half, q & 1, q >> 1])),
+                    axis,
+                );
             }
         }
     }

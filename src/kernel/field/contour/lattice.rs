@@ -1,4 +1,7 @@
 //! The lattice on which the octree stands: a brick of cells, none more than twice as long as it is wide.
+//!
+//! Cells are a little smaller at one end of the box than at the other, so that faces of models, which lie at round
+//! numbers, seldom lie on faces of cells.
 
 use glam::DVec3;
 
@@ -6,6 +9,9 @@ use crate::geom::Bounds;
 
 /// Levels of the octree; corners have whole coordinates from 0 to 2^20.
 pub(super) const LEVELS: u8 = 20;
+
+/// How much the size of cells changes along x, y and z.
+const SLANT: DVec3 = DVec3::new(0.031, 0.037, 0.041);
 
 /// A corner of the lattice.
 pub(super) type Corner = [u32; 3];
@@ -15,8 +21,6 @@ pub(super) type Corner = [u32; 3];
 pub(super) struct Lattice {
     min: DVec3,
     max: DVec3,
-    /// One step between corners.
-    step: DVec3,
     /// The largest coordinates within the box.
     ends: Corner,
 }
@@ -29,15 +33,15 @@ impl Lattice {
         let longest = size.max_element();
         let halvings = |s: f64| libm::round(libm::log2(longest / s)).clamp(0.0, 12.0) as u32;
         let ends = size.to_array().map(|s| 1u32 << (u32::from(LEVELS) - halvings(s)));
-        let step = size / DVec3::from(ends.map(f64::from));
-        Lattice { min: within.min, max: within.max, step, ends }
+        Lattice { min: within.min, max: within.max, ends }
     }
 
     /// Where a corner is; the ends of the box exactly.
     pub fn point(&self, corner: Corner) -> DVec3 {
-        let along = |a: usize| match corner[a] == self.ends[a] {
-            true => self.max[a],
-            false => self.min[a] + f64::from(corner[a]) * self.step[a],
+        let along = |a: usize| {
+            let t = f64::from(corner[a]) / f64::from(self.ends[a]);
+            let slanted = t + SLANT[a] * t * (1.0 - t);
+            if t == 1.0 { self.max[a] } else { self.min[a] + slanted * (self.max[a] - self.min[a]) }
         };
         DVec3::new(along(0), along(1), along(2))
     }
@@ -63,15 +67,21 @@ impl Lattice {
         (0..3).any(|a| corner[a] == 0 || corner[a] == self.ends[a])
     }
 
-    /// Half the diagonal of a cell.
+    /// Half the diagonal of the largest cell of a level.
     pub fn reach(&self, level: u8) -> f64 {
-        (self.step * f64::from(edge(level))).length() / 2.0
+        let steps = DVec3::from(self.ends.map(f64::from)) / f64::from(edge(level));
+        ((self.max - self.min) * (1.0 + SLANT) / steps).length() / 2.0
     }
 
     /// The finest coordinates of the cell around a point.
     pub fn corner_below(&self, p: DVec3) -> Corner {
-        let scaled = ((p - self.min) / self.step).to_array();
-        [0, 1, 2].map(|a| (scaled[a].max(0.0) as u32).min(self.ends[a] - 1))
+        let share = (p - self.min) / (self.max - self.min);
+        [0, 1, 2].map(|a| {
+            let slant = SLANT[a];
+            let square = (1.0 + slant) * (1.0 + slant) - 4.0 * slant * share[a];
+            let t = (1.0 + slant - square.max(0.0).sqrt()) / (2.0 * slant);
+            ((t * f64::from(self.ends[a])).max(0.0) as u32).min(self.ends[a] - 1)
+        })
     }
 }
 

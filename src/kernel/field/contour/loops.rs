@@ -163,11 +163,8 @@ fn pair_up<L: Level>(tree: &Octree<L>, edges: &[Edge], on_face: &mut [([u32; 2],
     // Going around, the first edge leads inside or outside.
     let first = &edges[on_face[0].1 as usize];
     let along = (0..3).find(|&i| first.from[i] != first.to[i]).unwrap_or(u);
-    let forwards = if along == u {
-        first.from[v] == low[v]
-    } else {
-        first.from[u] == low[u] + size[u]
-    };
+    let forwards =
+        if along == u { first.from[v] == low[v] } else { first.from[u] == low[u] + size[u] };
     let leads_inside = first.leaves != forwards;
     if leads_inside == inside {
         on_face.rotate_left(1);

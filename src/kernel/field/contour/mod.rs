@@ -113,6 +113,8 @@ impl ContourError {
 
 /// Triangles that a surface may have.
 pub const MOST_TRIANGLES: usize = 3_000_000;
+/// Of so many triangles the deviations tell how many there will be.
+const TELLING: usize = 40_000;
 /// How often triangles are looked at and cells halved.
 const ROUNDS: usize = 40;
 
@@ -143,13 +145,19 @@ impl<L: Level> Contour<L> {
         self.surface.triangles.is_empty()
     }
 
-    /// The surface as a mesh of triangles, closed and manifold by index.
-    pub fn mesh(&self, origin: Origin) -> PolyMesh {
+    /// The surface as a mesh of triangles, closed and manifold by index. `origin` tells which of the origins a
+    /// place of the surface has.
+    pub fn mesh(&self, origins: &[Origin], origin: impl Fn(DVec3) -> u32 + Sync) -> PolyMesh {
         let mut mesh = PolyMesh::with_points(self.surface.points.clone());
-        let origin = mesh.add_origin(origin);
-        for triangle in &self.surface.triangles {
+        origins.iter().for_each(|o| {
+            mesh.add_origin(o.clone());
+        });
+        let middle = |t: &[u32; 3]| t.map(|i| mesh.points[i as usize]).iter().sum::<DVec3>() / 3.0;
+        let triangles = &self.surface.triangles;
+        let numbers: Vec<u32> = triangles.par_iter().map(|t| origin(middle(t))).collect();
+        for (triangle, number) in triangles.iter().zip(numbers) {
             let plane = mesh.add_plane();
-            mesh.push_face(&[*triangle], plane, origin);
+            mesh.push_face(&[*triangle], plane, number);
         }
         mesh.drop_unused_points();
         mesh
@@ -161,7 +169,9 @@ impl<L: Level> Contour<L> {
         let leaves: Vec<u32> = places.iter().map(|&p| self.tree.leaf(p)).collect();
         let (again, fresh): (Vec<u32>, Vec<u32>) =
             leaves.into_iter().partition(|leaf| self.cut.contains(leaf));
-        if let Some(place) = again.iter().position(|&c| self.tree.cells[c as usize].level + 1 >= lattice::LEVELS) {
+        if let Some(place) =
+            again.iter().position(|&c| self.tree.cells[c as usize].level + 1 >= lattice::LEVELS)
+        {
             return Err(ContourError::Crossed { at: places[place] });
         }
         self.cut.extend(fresh);
@@ -173,8 +183,10 @@ impl<L: Level> Contour<L> {
     fn refine(&mut self) -> Result<(), ContourError> {
         for _ in 0..ROUNDS {
             self.surface = Surface::new(&self.tree, self.tolerance, &self.cut);
-            self.check_size()?;
-            let coarse = self.coarse();
+            let deviations: Vec<f64> =
+                self.surface.triangles.par_iter().map(|t| self.deviation(t)).collect();
+            self.check_size(&deviations)?;
+            let coarse = self.coarse(&deviations);
             if coarse.is_empty() && !self.cut_doubled() {
                 return Ok(());
             }
@@ -183,13 +195,16 @@ impl<L: Level> Contour<L> {
         Ok(())
     }
 
-    fn check_size(&self) -> Result<(), ContourError> {
-        let found = self.surface.triangles.len();
-        if found <= MOST_TRIANGLES {
+    /// Stops where there are too many triangles, or soon will be: their number grows as their deviation must
+    /// shrink.
+    fn check_size(&self, deviations: &[f64]) -> Result<(), ContourError> {
+        let found = deviations.len();
+        let times = |off: &f64| (off / self.tolerance).clamp(1.0, f64::MAX);
+        let needed: f64 = deviations.iter().map(times).sum();
+        let telling = found >= TELLING && needed > 2.0 * MOST_TRIANGLES as f64;
+        if found <= MOST_TRIANGLES && !telling {
             return Ok(());
         }
-        let worst = self.surface.triangles.par_iter().map(|t| (self.deviation(t) / self.tolerance).clamp(1.0, 1e3));
-        let needed: f64 = worst.collect::<Vec<f64>>().iter().sum();
         Err(ContourError::TooFine {
             found: needed,
             limit: MOST_TRIANGLES,
@@ -198,23 +213,20 @@ impl<L: Level> Contour<L> {
     }
 
     /// The cells of triangles that are too far from the surface.
-    fn coarse(&self) -> Vec<u32> {
-        let far = |t: &[u32; 3]| {
+    fn coarse(&self, deviations: &[f64]) -> Vec<u32> {
+        let mut found = vec![];
+        for (t, _) in
+            self.surface.triangles.iter().zip(deviations).filter(|t| *t.1 > self.tolerance)
+        {
             let cells = t.map(|i| self.surface.cells[i as usize]);
-            let free = |c: &u32| self.tree.may_split(*c);
-            if !cells.iter().any(free) || self.deviation(t) <= self.tolerance {
-                return None;
-            }
-            let level = |c: &u32| self.tree.cells[*c as usize].level;
-            let least = cells.iter().map(level).min();
-            Some(cells.map(|c| (Some(level(&c)) == least && free(&c)).then_some(c)))
-        };
-        let found: Vec<[Option<u32>; 3]> =
-            self.surface.triangles.par_iter().filter_map(far).collect();
-        let mut cells: Vec<u32> = found.into_iter().flatten().flatten().collect();
-        cells.sort_unstable();
-        cells.dedup();
-        cells
+            let level = |c: u32| self.tree.cells[c as usize].level;
+            let least = cells.iter().map(|&c| level(c)).min();
+            let largest = cells.iter().filter(|&&c| Some(level(c)) == least);
+            found.extend(largest.filter(|&&c| self.tree.may_split(c)));
+        }
+        found.sort_unstable();
+        found.dedup();
+        found
     }
 
     /// How far corners, middles of edges and the middle of a triangle are from the surface at most.

@@ -6,7 +6,9 @@ use super::{Level, octree::Octree};
 use crate::geom::Bounds;
 
 /// Evaluations that a root may take.
-const ROOT_STEPS: usize = 12;
+const ROOT_STEPS: usize = 16;
+/// A share of the tolerance that a root may be off: so small that flat faces come out flat.
+const ROOT: f64 = 1e-7;
 /// Steps towards the surface.
 const NEWTON_STEPS: usize = 4;
 /// A share of the tolerance that is as good as none.
@@ -29,13 +31,13 @@ pub(super) struct Sample {
 pub(super) fn root<L: Level>(field: &L, ends: [(DVec3, f64); 2], tolerance: f64) -> Sample {
     let [(a, mut fa), (b, mut fb)] = ends;
     let (mut ta, mut tb, mut t) = (0.0, 1.0, 0.5);
-    let mut kept = 0;
+    let (mut kept, slope) = (0, (fa - fb).abs() / a.distance(b));
+    let enough = ROOT * tolerance * if slope.is_finite() { slope } else { 0.0 };
     for _ in 0..ROOT_STEPS {
         let guess = ta + (tb - ta) * fa / (fa - fb);
         t = if guess.is_finite() { guess } else { (ta + tb) / 2.0 };
-        let point = a.lerp(b, t);
-        let value = field.value(point);
-        if field.off(point) <= NEGLIGIBLE * tolerance || value == 0.0 {
+        let value = field.value(a.lerp(b, t));
+        if value.abs() <= enough || value == 0.0 {
             break;
         }
         if (value <= 0.0) == (fa <= 0.0) {

@@ -1,0 +1,156 @@
+//! Solids of charges and formulas, and offsets that are contoured, against closed forms.
+
+use std::f64::consts::PI;
+
+use katachi::{
+    base::{Shelf, watch::Unwatched},
+    convert::offset::{deviation, offset, tested},
+    geom::Tolerance,
+    kernel::{
+        brep::{
+            Polyhedron,
+            crossing::crossings,
+            measure,
+            primitive::{cuboid, torus},
+        },
+        field::{Polyhedral, Test},
+    },
+    session::Session,
+    shape::Measures,
+};
+
+fn tolerance(mm: f64) -> Tolerance {
+    Tolerance::new(mm).expect("positive")
+}
+
+fn measured(source: &str, mm: f64) -> Measures {
+    let shelf = Shelf(&[("model.kata", source)]);
+    let session = Session::new(&shelf, &Unwatched, Some(tolerance(mm)));
+    let (mut model, diagnostics) = session.compile("model.kata", &[]);
+    assert!(diagnostics.is_empty(), "{source}: {diagnostics:?}");
+    let found = model.measure(&[]);
+    (*found.found[0].1).clone()
+}
+
+/// Whether a volume is the expected one within 0.1 % and what the tolerance times the area allows.
+fn assert_volume(source: &str, expected: f64) {
+    let found = measured(source, 0.01);
+    let slack = 1e-3 * expected + found.area * 0.01;
+    assert!(found.closed, "{source}");
+    assert!((found.volume - expected).abs() <= slack, "{source}: {}, {expected}", found.volume);
+}
+
+#[test]
+fn one_charge_is_a_sphere() {
+    let ball = |r: f64| 4.0 / 3.0 * PI * r.powi(3);
+    assert_volume("metaball([{ at = [1, 2, 3] }], threshold = 0.2)", ball(5.0));
+    assert_volume("metaball([{ at = [0, 0, 0], q = 4 }])", ball(4.0));
+    let square = "metaball([{ at = [0, 0, 0], q = 8, falloff = INVERSE_SQUARE }], threshold = 0.5)";
+    assert_volume(square, ball(4.0));
+    // exp(-(d / r)^2) = 1 / e at d = r.
+    let blinn = "metaball([{ at = [0, 0, 0], falloff = BLINN, r = 5 }], threshold = 0.36787944)";
+    assert_volume(blinn, ball(5.0));
+    // 1 - 22/9 u + 17/9 u^2 - 4/9 u^3 = 1/2 at u = 1/4.
+    let wyvill = "metaball([{ at = [0, 0, 0], falloff = WYVILL, r = 8 }], threshold = 0.5)";
+    assert_volume(wyvill, ball(4.0));
+}
+
+#[test]
+fn two_charges_merge_below_the_threshold_between_them() {
+    let two = |t: f64| {
+        format!("metaball([{{ at = [-2, 0, 0] }}, {{ at = [2, 0, 0] }}], threshold = {t})")
+    };
+    assert_eq!(measured(&two(0.99), 0.01).shells, 1);
+    assert_eq!(measured(&two(1.01), 0.01).shells, 2);
+    let pushed =
+        "metaball([{ at = [-2, 0, 0], q = 2 }, { at = [2, 0, 0], q = -1 }], threshold = 0.1)";
+    let bounds = measured(pushed, 0.01).bounds.expect("full");
+    assert!(bounds[1].x < 8.0 && bounds[0].x < -14.0, "{bounds:?}");
+}
+
+#[test]
+fn formulas_are_solids() {
+    let box20 = "within = [[-10, -10, -10], [10, 10, 10]]";
+    assert_volume(&format!("field(p => norm(p) - 6, {box20})"), 288.0 * PI);
+    let cube = "max([abs(p.x), abs(p.y), abs(p.z)]) - 5";
+    assert_volume(&format!("field(p => {cube}, {box20})"), 1000.0);
+    let ring = "norm([norm([p.x, p.y]) - 6, p.z]) - 2";
+    assert_volume(&format!("field(p => {ring}, {box20})"), 48.0 * PI * PI);
+    // Two overlapping balls of radius 4, 4 apart: two caps of height 2 count once.
+    let two = "(if p.x < 0 { norm(p + [2, 0, 0]) } else { norm(p - [2, 0, 0]) }) - 4";
+    let expected = 2.0 * (4.0 / 3.0 * PI * 64.0) - 2.0 * PI * 4.0 * (12.0 - 2.0) / 3.0;
+    assert_volume(&format!("field(p => {two}, {box20})"), expected);
+    let sum = "1 - sum(for c in [[-3, 0, 0], [3, 0, 0]] { 16mm^2 / dot(p - c, p - c) })";
+    assert_eq!(measured(&format!("field(p => {sum}, {box20})"), 0.02).shells, 1);
+}
+
+#[test]
+fn sharp_edges_of_formulas_stay_sharp() {
+    let cube = "max([abs(p.x), abs(p.y), abs(p.z)]) - 5";
+    let found =
+        measured(&format!("field(p => {cube}, within = [[-10, -10, -10], [10, 10, 10]])"), 0.05);
+    assert!((found.volume - 1000.0).abs() < 1e-6, "{}", found.volume);
+    assert_eq!(found.triangles, 12);
+}
+
+/// Shrinks or grows, and checks that the result is closed, does not cross itself and is where it should be.
+fn moved(solid: &Polyhedron, by: f64, allowed: f64) -> Polyhedron {
+    let found = offset(solid, by, tolerance(allowed)).expect("an offset");
+    assert_eq!(crossings(found.mesh()).len(), 0, "by {by}");
+    assert!(Polyhedron::new(found.mesh().clone()).is_ok());
+    let field = Polyhedral::new(solid.mesh()).expect("full");
+    if let Some(off) = deviation(found.mesh(), &field, by) {
+        assert!(off.most <= allowed, "by {by}: off by {} at {}", off.most, off.at);
+    }
+    found
+}
+
+#[test]
+fn what_folds_at_many_places_is_contoured() {
+    let ring = moved(&torus(10.0, 4.0, 48, 32), 7.0, 0.03);
+    assert_eq!(measure::genus(&ring), 0);
+    let cube = cuboid(glam::DVec3::ZERO, glam::DVec3::splat(10.0));
+    let back = moved(&moved(&cube, 1.0, 0.01), -2.0, 0.03);
+    // Chords of the first offset lie inside, so the second one rounds edges by a trifle.
+    assert!((measure::volume(&back) - 512.0).abs() < 2.0, "{}", measure::volume(&back));
+}
+
+#[test]
+fn the_hypersphere_tests_agree() {
+    let grain = cuboid(glam::DVec3::ZERO, glam::DVec3::splat(0.5));
+    let block = cuboid(glam::DVec3::ZERO, glam::DVec3::new(4.0, 3.0, 2.0));
+    let random = Test::MonteCarlo { n: 400, seed: 7 };
+    for (solid, by, expected) in [(&grain, 5.0, 649.033500), (&block, 1.0, 108.462)] {
+        let found = |test: Test| {
+            let grown = tested(solid, by, test, tolerance(0.2)).expect("an offset");
+            assert!(measure::shells(&grown) == 1, "{test:?}: a hole in the middle");
+            measure::volume(&grown)
+        };
+        let [exact, halved, sampled] = [Test::Exact, Test::Quadtree, random].map(found);
+        assert!((exact / expected - 1.0).abs() < 0.05, "{exact}");
+        assert!((halved / exact - 1.0).abs() < 0.03, "{halved} {exact}");
+        assert!((sampled / exact - 1.0).abs() < 0.06, "{sampled} {exact}");
+    }
+    let shrunk = tested(&block, -0.5, Test::Quadtree, tolerance(0.05)).expect("an offset");
+    assert!((measure::volume(&shrunk) - 6.0).abs() < 0.3, "{}", measure::volume(&shrunk));
+}
+
+#[test]
+fn fields_tell_distances() {
+    let source = "s = box(10, 10, 10)
+assert near(s.field().at([0, 0, 15]), 5mm)
+assert near(s.field().at([0, 0, 4]), -4mm)
+assert near(distance(s, [8, 0, 5]), 3mm)
+part p = s";
+    assert!((measured(source, 0.1).volume - 1000.0).abs() < 1e-9);
+}
+
+#[test]
+fn the_same_bytes_come_from_one_and_two_threads() {
+    let ring = torus(10.0, 4.0, 24, 16);
+    let of = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        pool.install(|| moved(&ring, 7.0, 0.1))
+    };
+    assert_eq!(of(1).mesh(), of(2).mesh());
+}
