@@ -207,6 +207,38 @@ impl Formula {
 
     /// What values and derivatives lie between over a box.
     pub fn over(&self, cell: &Bounds) -> Jet {
+        self.jets(cell).last().copied().unwrap_or(Jet::constant(f64::NAN))
+    }
+
+    /// What derivatives lie between over a box, apart for each of the functions that it is the smallest or the
+    /// largest of.
+    pub fn slopes(&self, cell: &Bounds) -> Vec<[Interval; 3]> {
+        let jets = self.jets(cell);
+        let fixed = |i: u32| jets[i as usize].slope == [Interval::ZERO; 3];
+        let (mut open, mut found) = (vec![self.ops.len() as u32 - 1], vec![]);
+        while let Some(i) = open.pop() {
+            let [x, y] = match self.ops[i as usize] {
+                Op::Binary(_, a, b) => [a, b].map(|i| jets[i as usize].value),
+                _ => [Interval::ALL; 2],
+            };
+            match self.ops[i as usize] {
+                Op::Binary(Binary::Min | Binary::Max, a, b)
+                    if x.low <= y.high && y.low <= x.high =>
+                {
+                    open.extend([a, b]);
+                }
+                Op::Binary(Binary::Min, a, b) => open.push(if x.low < y.low { a } else { b }),
+                Op::Binary(Binary::Max, a, b) => open.push(if x.low > y.low { a } else { b }),
+                Op::Binary(Binary::Add | Binary::Subtract, a, b) if fixed(b) => open.push(a),
+                Op::Binary(Binary::Add, a, b) if fixed(a) => open.push(b),
+                _ => found.push(jets[i as usize].slope),
+            }
+        }
+        found
+    }
+
+    /// Values and derivatives of all steps over a box.
+    fn jets(&self, cell: &Bounds) -> Vec<Jet> {
         let mut jets: Vec<Jet> = Vec::with_capacity(self.ops.len());
         for op in &self.ops {
             let of = |i: u32| &jets[i as usize];
@@ -219,7 +251,7 @@ impl Formula {
             };
             jets.push(jet);
         }
-        jets.last().copied().unwrap_or(Jet::constant(f64::NAN))
+        jets
     }
 }
 

@@ -25,6 +25,11 @@ pub trait Smooth: Send + Sync {
 
     /// What values and derivatives lie between over a box.
     fn over(&self, cell: &Bounds) -> Jet;
+
+    /// What derivatives lie between over a box, apart for functions that it is made of by pieces.
+    fn slopes(&self, cell: &Bounds) -> Vec<[Interval; 3]> {
+        vec![self.over(cell).slope]
+    }
 }
 
 impl Smooth for Formula {
@@ -34,6 +39,10 @@ impl Smooth for Formula {
 
     fn over(&self, cell: &Bounds) -> Jet {
         Formula::over(self, cell)
+    }
+
+    fn slopes(&self, cell: &Bounds) -> Vec<[Interval; 3]> {
+        Formula::slopes(self, cell)
     }
 }
 
@@ -68,11 +77,14 @@ impl<S: Smooth> Level for Zeros<S> {
         if sign(over.value) != 0.0 || self.is_clear(cell, &over) {
             return Look::Clear;
         }
-        let main = over.slope.map(Interval::middle);
-        let along = (0..3).map(|i| over.slope[i] * Interval::point(main[i]));
-        let growth = along.fold(Interval::ZERO, |sum, part| sum + part);
-        let bounded = main.iter().all(|x| x.is_finite());
-        if bounded && growth.low > 0.0 { Look::Sheet } else { Look::Unknown }
+        let slopes = self.0.slopes(cell);
+        let middle = |slope: &[Interval; 3]| DVec3::from(slope.map(Interval::middle));
+        let main = slopes.iter().map(|s| middle(s).normalize_or_zero()).sum::<DVec3>();
+        let grows = |slope: &[Interval; 3]| {
+            let along = (0..3).map(|i| slope[i] * Interval::point(main[i]));
+            along.fold(Interval::ZERO, |sum, part| sum + part).low > 0.0
+        };
+        if main.is_finite() && slopes.iter().all(grows) { Look::Sheet } else { Look::Unknown }
     }
 
     fn within(&self, _: &Bounds) -> Self {

@@ -34,7 +34,10 @@ use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 use thiserror::Error;
 
-use self::{octree::Octree, surface::Surface};
+use self::{
+    octree::Octree,
+    surface::{Made, Surface},
+};
 use crate::geom::{Bounds, Origin, PolyMesh};
 
 /// What the surface does in a cell.
@@ -126,7 +129,14 @@ pub struct Contour<L> {
     tolerance: f64,
     /// Leaves whose polygons are cut.
     cut: FxHashSet<u32>,
+    /// How far triangles of the round before are off.
+    known: FxHashMap<Name, f64>,
+    /// Points of earlier rounds.
+    made: Made,
 }
+
+/// A triangle by the bits of its corners.
+type Name = [[u64; 3]; 3];
 
 impl<L: Level> Contour<L> {
     /// The zeros of a function in a box, within `tolerance` mm. The function must be positive on the faces of
@@ -134,8 +144,14 @@ impl<L: Level> Contour<L> {
     /// where there would be more than [`MOST_TRIANGLES`].
     pub fn new(level: L, within: &Bounds, tolerance: f64) -> Result<Contour<L>, ContourError> {
         let tree = Octree::new(level, within, tolerance)?;
-        let (surface, cut) = (Surface::default(), FxHashSet::default());
-        let mut contour = Contour { tree, surface, tolerance, cut };
+        let mut contour = Contour {
+            tree,
+            surface: Surface::default(),
+            tolerance,
+            cut: FxHashSet::default(),
+            known: FxHashMap::default(),
+            made: Made::default(),
+        };
         contour.refine()?;
         Ok(contour)
     }
@@ -182,9 +198,8 @@ impl<L: Level> Contour<L> {
     /// Halves cells until the surface is within the tolerance and manifold.
     fn refine(&mut self) -> Result<(), ContourError> {
         for _ in 0..ROUNDS {
-            self.surface = Surface::new(&self.tree, self.tolerance, &self.cut);
-            let deviations: Vec<f64> =
-                self.surface.triangles.par_iter().map(|t| self.deviation(t)).collect();
+            self.surface = Surface::new(&self.tree, self.tolerance, &self.cut, &mut self.made);
+            let deviations = self.deviations();
             self.check_size(&deviations)?;
             let coarse = self.coarse(&deviations);
             if coarse.is_empty() && !self.cut_doubled() {
@@ -229,11 +244,27 @@ impl<L: Level> Contour<L> {
         found
     }
 
-    /// How far corners, middles of edges and the middle of a triangle are from the surface at most.
-    fn deviation(&self, triangle: &[u32; 3]) -> f64 {
-        let [a, b, c] = triangle.map(|i| self.surface.points[i as usize]);
-        let places = [(a + b + c) / 3.0, (a + b) / 2.0, (b + c) / 2.0, (c + a) / 2.0, a, b, c];
-        places.iter().map(|p| self.tree.off(*p)).fold(0.0, f64::max)
+    /// How far the corners, the middle and the middles of edges of each triangle are from the surface at most. An
+    /// edge counts for one of its triangles.
+    fn deviations(&mut self) -> Vec<f64> {
+        let Surface { points, triangles, .. } = &self.surface;
+        let corners: Vec<f64> = points.par_iter().map(|p| self.tree.off(*p)).collect();
+        let deviation = |t: &[u32; 3]| {
+            let at = t.map(|i| points[i as usize]);
+            let name = at.map(|p| p.to_array().map(f64::to_bits));
+            if let Some(&known) = self.known.get(&name) {
+                return (name, known);
+            }
+            let sides = (0..3).filter(|&k| t[k] < t[(k + 1) % 3]);
+            let middles = sides.map(|k| (at[k] + at[(k + 1) % 3]) / 2.0);
+            let places = middles.chain([(at[0] + at[1] + at[2]) / 3.0]);
+            let off = places.map(|p| self.tree.off(p)).chain(t.map(|i| corners[i as usize]));
+            (name, off.fold(0.0, f64::max))
+        };
+        let found: Vec<(Name, f64)> = triangles.par_iter().map(deviation).collect();
+        let deviations = found.iter().map(|(_, off)| *off).collect();
+        self.known = found.into_iter().collect();
+        deviations
     }
 
     /// Cuts the polygons that share an edge with more than one other. Whether there are such.

@@ -7,16 +7,21 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::{
     Level,
     edges::{Edge, crossed},
+    lattice::key,
     loops::{Loops, NONE, shared},
     octree::Octree,
     vertex::{Sample, inset, root, towards, vertex},
 };
 use crate::geom::Bounds;
+
+/// Quadrilaterals whose diagonals are nearer to each other than this, squared and relative to the shorter one, are
+/// flat.
+const FLAT: f64 = 1e-6;
 
 /// Triangles over points, with the leaves that they came from.
 #[derive(Debug, Default)]
@@ -25,6 +30,13 @@ pub(super) struct Surface {
     pub triangles: Vec<[u32; 3]>,
     /// For each point a leaf that it lies in.
     pub cells: Vec<u32>,
+}
+
+/// Points of earlier rounds: samples by the ends of their edges, vertices by their leaf and their edges.
+#[derive(Debug, Default)]
+pub(super) struct Made {
+    samples: FxHashMap<[u64; 2], Sample>,
+    vertices: FxHashMap<(u32, Vec<[u64; 2]>), DVec3>,
 }
 
 /// All that is known of the pieces before their polygons are made.
@@ -43,21 +55,39 @@ struct Maker<'a, L> {
 impl Surface {
     /// The surface of an octree; no point of it is off by more than a fraction of the tolerance, if its leaves
     /// are small enough.
-    pub fn new<L: Level>(tree: &Octree<L>, tolerance: f64, cut: &FxHashSet<u32>) -> Surface {
+    pub fn new<L: Level>(
+        tree: &Octree<L>,
+        tolerance: f64,
+        cut: &FxHashSet<u32>,
+        made: &mut Made,
+    ) -> Surface {
         let edges = crossed(tree);
         let loops = Loops::new(tree, &edges);
-        let sample = |e: &Edge| {
+        let names: Vec<[u64; 2]> = edges.iter().map(|e| [key(e.from), key(e.to)]).collect();
+        let sample = |(e, name): (&Edge, &[u64; 2])| {
+            if let Some(known) = made.samples.get(name) {
+                return *known;
+            }
             let end = |corner| (tree.lattice.point(corner), tree.value(corner));
             let field = &tree.cells[e.smallest as usize].field;
             root(field, [end(e.from), end(e.to)], tolerance)
         };
-        let samples: Vec<Sample> = edges.par_iter().map(sample).collect();
+        let samples: Vec<Sample> = edges.par_iter().zip(&names).map(sample).collect();
         let place = |piece: u32| {
+            let of = loops.around(piece).iter().map(|&e| names[e as usize]).collect();
+            let name = (loops.cells[piece as usize], of);
+            if let Some(known) = made.vertices.get(&name) {
+                return (name, *known);
+            }
             let around = loops.around(piece).iter().map(|&e| samples[e as usize]);
-            vertex(tree, loops.cells[piece as usize], around, tolerance)
+            let point = vertex(tree, loops.cells[piece as usize], around, tolerance);
+            (name, point)
         };
         let pieces = loops.cells.len() as u32;
-        let points: Vec<DVec3> = (0..pieces).into_par_iter().map(place).collect();
+        let placed: Vec<_> = (0..pieces).into_par_iter().map(place).collect();
+        let points: Vec<DVec3> = placed.iter().map(|(_, point)| *point).collect();
+        made.vertices = placed.into_iter().collect();
+        made.samples = names.into_iter().zip(samples.iter().copied()).collect();
         let out = Surface { points, triangles: vec![], cells: loops.cells.clone() };
         let on_faces = vec![NONE; loops.segments.len()];
         let mut maker = Maker { tree, edges, loops, samples, cut, on_faces, out };
@@ -127,6 +157,10 @@ impl<L: Level> Maker<'_, L> {
             ((p + q) / 2.0, p.distance_squared(q))
         };
         let ((p, long), (q, wide)) = (middle(0, 2), middle(1, 3));
+        // Flat ones need no look at the surface.
+        if p.distance_squared(q) < FLAT * long.min(wide) {
+            return long <= wide;
+        }
         let (a, b) = (self.tree.off(p), self.tree.off(q));
         // Cuts as good as each other are told apart by their lengths.
         if (a - b).abs() > 1e-3 * a.max(b) { a < b } else { long <= wide }
