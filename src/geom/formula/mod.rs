@@ -145,21 +145,26 @@ impl Recording {
     /// assert_eq!(recording.formula(double).value(DVec3::new(3.0, 0.0, 0.0)), 6.0);
     /// ```
     pub fn formula(&self, result: u32) -> Formula {
-        let mut needed = vec![false; result as usize + 1];
-        needed[result as usize] = true;
-        for i in (0..needed.len()).rev() {
-            if needed[i] {
-                self.ops[i].operands().iter().for_each(|&o| needed[o as usize] = true);
-            }
-        }
-        let mut number = vec![0; needed.len()];
-        let mut ops = vec![];
-        for i in (0..needed.len()).filter(|&i| needed[i]) {
-            number[i] = ops.len() as u32;
-            ops.push(self.ops[i].renamed(|o| number[o as usize]));
-        }
-        Formula { ops }
+        Formula { ops: needed(&self.ops, result) }
     }
+}
+
+/// The steps that a result needs, numbered anew.
+fn needed(all: &[Op], result: u32) -> Vec<Op> {
+    let mut needed = vec![false; result as usize + 1];
+    needed[result as usize] = true;
+    for i in (0..needed.len()).rev() {
+        if needed[i] {
+            all[i].operands().iter().for_each(|&o| needed[o as usize] = true);
+        }
+    }
+    let mut number = vec![0; needed.len()];
+    let mut ops = vec![];
+    for i in (0..needed.len()).filter(|&i| needed[i]) {
+        number[i] = ops.len() as u32;
+        ops.push(all[i].renamed(|o| number[o as usize]));
+    }
+    ops
 }
 
 fn key(op: Op) -> Key {
@@ -235,6 +240,51 @@ impl Formula {
             }
         }
         found
+    }
+
+    /// The formula without the branches that are not taken in a box; `None` if all may be.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use katachi::geom::{Bounds, formula::{Binary, Op, Recording}};
+    /// let mut recording = Recording::default();
+    /// let [x, y] = [0, 1].map(|axis| recording.step(Op::Axis(axis)));
+    /// let least = recording.step(Op::Binary(Binary::Min, x, y));
+    /// let left = Bounds { min: DVec3::new(0.0, 2.0, 0.0), max: DVec3::new(1.0, 3.0, 1.0) };
+    /// assert_eq!(recording.formula(least).within(&left).unwrap().ops(), [Op::Axis(0)]);
+    /// ```
+    pub fn within(&self, cell: &Bounds) -> Option<Formula> {
+        let branches = |op: &Op| {
+            matches!(
+                op,
+                Op::Binary(Binary::Min | Binary::Max, ..)
+                    | Op::Choose(..)
+                    | Op::Unary(Unary::Abs, _)
+            )
+        };
+        if !self.ops.iter().any(branches) {
+            return None;
+        }
+        let jets = self.jets(cell);
+        let value = |i: u32| jets[i as usize].value;
+        let mut taken: Vec<u32> = (0..self.ops.len() as u32).collect();
+        for (i, op) in self.ops.iter().enumerate() {
+            let branch = match *op {
+                Op::Binary(Binary::Min, a, b) if value(a).high < value(b).low => a,
+                Op::Binary(Binary::Min, a, b) if value(b).high < value(a).low => b,
+                Op::Binary(Binary::Max, a, b) if value(a).low > value(b).high => a,
+                Op::Binary(Binary::Max, a, b) if value(b).low > value(a).high => b,
+                Op::Choose(a, _, c) if value(a) == Interval::ZERO => c,
+                Op::Choose(a, b, _) if !value(a).contains(0.0) => b,
+                Op::Unary(Unary::Abs, a) if value(a).low > 0.0 => a,
+                _ => continue,
+            };
+            taken[i] = taken[branch as usize];
+        }
+        let fewer = taken.iter().zip(0..).any(|(t, i)| *t != i);
+        let renamed = self.ops.iter().map(|op| op.renamed(|i| taken[i as usize]));
+        let result = *taken.last()?;
+        fewer.then(|| Formula { ops: needed(&renamed.collect::<Vec<Op>>(), result) })
     }
 
     /// Values and derivatives of all steps over a box.

@@ -258,11 +258,13 @@ impl Level for Hypersphere<'_> {
     }
 
     fn look(&self, cell: &Bounds) -> Look {
-        // The least distance changes no faster than the point moves. That of random points is larger than the true
-        // one, so that what is sure inside by the true one is not.
+        let away = self.by.signum() * self.apart.distance(cell.center());
+        // Random points give a distance that is too large and jumps: sure is only what they are not asked for.
         match self.apart.look(cell) {
-            _ if self.value(cell.center()).abs() > half_diagonal(cell) => Look::Clear,
-            Look::Clear if self.is_random() => Look::Sheet,
+            Look::Clear if self.is_random() => match away.abs() > half_diagonal(cell) {
+                true if away < 0.0 || away - half_diagonal(cell) > self.by.abs() => Look::Clear,
+                _ => Look::Sheet,
+            },
             look => look,
         }
     }

@@ -14,7 +14,7 @@ use crate::geom::{
 const ROUNDING: f64 = 1e-12;
 
 /// A function of space with bounds over boxes.
-pub trait Smooth: Send + Sync {
+pub trait Smooth: Send + Sync + Sized {
     /// Its value, not positive inside; NaN where it has none.
     fn value(&self, p: DVec3) -> f64;
 
@@ -25,6 +25,11 @@ pub trait Smooth: Send + Sync {
 
     /// What values and derivatives lie between over a box.
     fn over(&self, cell: &Bounds) -> Jet;
+
+    /// A function that gives the same answers for the points of a cell, sooner; `None` for itself.
+    fn within(&self, _cell: &Bounds) -> Option<Self> {
+        None
+    }
 
     /// What derivatives lie between over a box, apart for functions that it is made of by pieces.
     fn slopes(&self, cell: &Bounds) -> Vec<[Interval; 3]> {
@@ -39,6 +44,10 @@ impl Smooth for Formula {
 
     fn over(&self, cell: &Bounds) -> Jet {
         Formula::over(self, cell)
+    }
+
+    fn within(&self, cell: &Bounds) -> Option<Self> {
+        Formula::within(self, cell)
     }
 
     fn slopes(&self, cell: &Bounds) -> Vec<[Interval; 3]> {
@@ -87,8 +96,8 @@ impl<S: Smooth> Level for Zeros<S> {
         if main.is_finite() && slopes.iter().all(grows) { Look::Sheet } else { Look::Unknown }
     }
 
-    fn within(&self, _: &Bounds) -> Self {
-        self.clone()
+    fn within(&self, cell: &Bounds) -> Self {
+        self.0.within(cell).map_or_else(|| self.clone(), Zeros::new)
     }
 }
 
