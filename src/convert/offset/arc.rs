@@ -22,11 +22,12 @@ pub(super) fn arc(a: DVec3, b: DVec3, count: u32) -> Vec<DVec3> {
 }
 
 /// Moves the inner points of an arc of unit radius outwards, by no more than `most`, so that its chords enclose as
-/// much area as the arc: volumes come out right, and chords are nearer to the arc.
+/// much area as the arc: volumes come out right, and chords are nearer to the arc. With a `bulge` other than 1 they
+/// move so many times as far.
 ///
 /// With k chords over angles 2 a and inner points at the radius q, twice the area is
 /// sin 2 a (2 q + (k - 2) q^2); that of the arc is 2 a k.
-pub(super) fn evened(mut points: Vec<DVec3>, most: f64) -> Vec<DVec3> {
+pub(super) fn evened(mut points: Vec<DVec3>, bulge: f64, most: f64) -> Vec<DVec3> {
     let count = points.len() - 1;
     if count < 2 {
         return points;
@@ -37,7 +38,7 @@ pub(super) fn evened(mut points: Vec<DVec3>, most: f64) -> Vec<DVec3> {
         2 => needed / 2.0,
         _ => ((1.0 + (k - 2.0) * needed).sqrt() - 1.0) / (k - 2.0),
     };
-    let factor = radius.clamp(1.0, 1.0 + most);
+    let factor = (1.0 + (radius - 1.0) * bulge).clamp(1.0, 1.0 + most);
     points[1..count].iter_mut().for_each(|p| *p *= factor);
     points
 }
@@ -204,10 +205,10 @@ mod tests {
 
     #[test]
     fn evened_arcs_and_swollen_caps_enclose_what_is_round() {
-        let points = evened(arc(DVec3::X, DVec3::Y, 6), 0.1);
+        let points = evened(arc(DVec3::X, DVec3::Y, 6), 1.0, 0.1);
         let area: f64 = points.windows(2).map(|w| w[0].cross(w[1]).z).sum::<f64>() / 2.0;
         assert!((area - std::f64::consts::PI / 4.0).abs() < 1e-12, "{area}");
-        let quarter = |a, b| evened(arc(a, b, 8), 0.1)[..8].to_vec();
+        let quarter = |a, b| evened(arc(a, b, 8), 1.0, 0.1)[..8].to_vec();
         let ring: Vec<DVec3> = [(DVec3::X, DVec3::Y), (DVec3::Y, DVec3::Z), (DVec3::Z, DVec3::X)]
             .into_iter()
             .flat_map(|(a, b)| quarter(a, b))

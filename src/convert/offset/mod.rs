@@ -119,6 +119,17 @@ pub fn offset(
     by: f64,
     tolerance: Tolerance,
 ) -> Result<Polyhedron, OffsetError> {
+    offset_before(solid, by, 0.0, tolerance)
+}
+
+/// An offset that is followed by another one by `next` mm: arcs are such that the area they enclose is right when
+/// that is done.
+fn offset_before(
+    solid: &Polyhedron,
+    by: f64,
+    next: f64,
+    tolerance: Tolerance,
+) -> Result<Polyhedron, OffsetError> {
     if !by.is_finite() {
         return Err(OffsetError::NotFinite(by));
     }
@@ -129,7 +140,7 @@ pub fn offset(
     // Errors of chords and joints may add up: then once more, finer.
     let mut finer = tolerance;
     for _ in 0..TRIES {
-        match offset_once(solid, by, finer, tolerance) {
+        match offset_once(solid, by, next, [finer, tolerance]) {
             Err(OffsetError::Inexact { .. }) => finer = finer.half(),
             Err(OffsetError::Crowded { .. } | OffsetError::Boolean(_)) => break,
             done => return done,
@@ -145,10 +156,13 @@ const TRIES: usize = 3;
 fn offset_once(
     solid: &Polyhedron,
     by: f64,
-    made: Tolerance,
-    allowed: Tolerance,
+    next: f64,
+    [made, allowed]: [Tolerance; 2],
 ) -> Result<Polyhedron, OffsetError> {
-    let whole = measure(by, made);
+    // Chords over angles 2 a touch the arc of the last radius r with its area at r (1 - a^2 / 6), and meet at the
+    // radius of this step after a^2 / 2 more.
+    let bulge = 1.5 - 0.5 * ((by + next) / by).clamp(0.0, 1.0);
+    let whole = Measure { bulge, ..measure(by, made) };
     let attempt = |measure: Measure| {
         let grown = uncrossed(raw_surface(solid, by, measure, made)?)?;
         proved(solid, grown, by, allowed)
@@ -189,7 +203,7 @@ fn extended(solid: &Polyhedron, by: f64, tolerance: Tolerance) -> Result<Polyhed
 fn measure(by: f64, tolerance: Tolerance) -> Measure {
     let (radius, allowed) = (by.abs(), tolerance.mm());
     let (chord, joint) = (CHORDS * allowed / radius, JOINTS * allowed / radius);
-    Measure { radius, round: true, curved: false, crowd: surface::CROWD, chord, joint }
+    Measure { radius, round: true, curved: false, bulge: 1.0, crowd: surface::CROWD, chord, joint }
 }
 
 /// The surface at a distance from a solid, which may cross itself.

@@ -143,8 +143,8 @@ impl<'a> Hypersphere<'a> {
             Test::MonteCarlo { n, seed } => random_points(n, seed),
             _ => vec![],
         };
-        // The distance from the middle of an area is that of its best point within radius * reach^2.
-        let least = (tolerance.mm() / (8.0 * by.abs())).sqrt().clamp(LEAST_REACH, 1.0);
+        // The distance of the middle of an area is that of its best point within the radius times its reach.
+        let least = (tolerance.mm() / (4.0 * by.abs())).clamp(LEAST_REACH, 1.0);
         let fine = |patch: &Patch| match test {
             Test::MonteCarlo { .. } => patch.points.len() <= FEW,
             _ => patch.reach() <= least,
@@ -216,7 +216,7 @@ impl<'a> Hypersphere<'a> {
 }
 
 /// Areas smaller than this, on the unit sphere, are not halved.
-const LEAST_REACH: f64 = 4e-3;
+const LEAST_REACH: f64 = 0.01;
 
 fn node(patch: &Patch) -> Node {
     let [z, angle] = patch.middle();
@@ -259,9 +259,9 @@ impl Level for Hypersphere<'_> {
 
     fn look(&self, cell: &Bounds) -> Look {
         let away = self.by.signum() * self.apart.distance(cell.center());
-        // Random points give a distance that is too large and jumps: sure is only what they are not asked for.
+        // The least distance found is not below the true one: what is sure inside by the true one is not.
         match self.apart.look(cell) {
-            Look::Clear if self.is_random() => match away.abs() > half_diagonal(cell) {
+            Look::Clear => match away.abs() > half_diagonal(cell) {
                 true if away < 0.0 || away - half_diagonal(cell) > self.by.abs() => Look::Clear,
                 _ => Look::Sheet,
             },

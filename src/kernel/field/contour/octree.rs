@@ -10,8 +10,8 @@ use super::{
 };
 use crate::geom::Bounds;
 
-/// Cells that an octree may have: about 1 GB.
-pub(super) const CELLS: usize = 6_000_000;
+/// Cells that an octree may have: about 2 GB with the triangles that those at the surface remember.
+pub(super) const CELLS: usize = 4_000_000;
 /// Cells along the longest side before the surface is looked at.
 const START: u8 = 3;
 
@@ -33,6 +33,8 @@ pub(super) struct Octree<L> {
     pub lattice: Lattice,
     pub cells: Vec<Cell<L>>,
     values: FxHashMap<u64, f64>,
+    /// The level of the whole, which stands in where a cell needs none of its own.
+    whole: L,
     /// The level beyond which nothing is sought.
     finest: u8,
     tolerance: f64,
@@ -46,9 +48,9 @@ impl<L: Level> Octree<L> {
             let least = lattice.reach(super::lattice::LEVELS);
             return Err(ContourError::too_fine(CELLS as f64 * least / tolerance, tolerance, least));
         };
+        let (whole, values) = (field.clone(), FxHashMap::default());
         let root = Cell { at: [0; 3], level: 0, children: 0, look: Look::Unknown, field };
-        let mut tree =
-            Octree { lattice, cells: vec![root], values: FxHashMap::default(), finest, tolerance };
+        let mut tree = Octree { lattice, cells: vec![root], values, whole, finest, tolerance };
         tree.grow(vec![0])?;
         Ok(tree)
     }
@@ -120,12 +122,13 @@ impl<L: Level> Octree<L> {
             let at = [0, 1, 2].map(|a| parent.at[a] + (k >> a & 1) * half);
             let level = parent.level + 1;
             if lattice.is_beyond(at) {
-                let field = parent.field.clone();
+                let field = self.whole.clone();
                 return Cell { at, level, children: 0, look: Look::Clear, field };
             }
             let bounds = lattice.bounds(at, level);
             let field = parent.field.within(&bounds);
             let look = field.look(&bounds);
+            let field = if look == Look::Clear { self.whole.clone() } else { field };
             Cell { at, level, children: 0, look, field }
         };
         let wanted: Vec<(u32, u32)> =
@@ -134,6 +137,7 @@ impl<L: Level> Octree<L> {
         let first = self.cells.len() as u32;
         for (i, &cell) in cells.iter().enumerate() {
             self.cells[cell as usize].children = first + 8 * i as u32;
+            self.cells[cell as usize].field = self.whole.clone();
         }
         self.cells.extend(made);
         Ok((first..self.cells.len() as u32).collect())
