@@ -115,45 +115,35 @@ mod tests {
     use glam::dvec3;
 
     use super::*;
+    use crate::convert::offset::deviation;
     use crate::geom::Falloff;
     use crate::kernel::{
         brep::{
-            measure::{bounds, genus, shells, triangles, volume},
+            measure::{bounds, genus, shells, volume},
             primitive::{cuboid, torus},
         },
-        field::{Apart, Polyhedral},
+        field::{Apart, Field, Polyhedral},
     };
 
     fn grown(solid: &Polyhedron, by: f64, tolerance: f64) -> Polyhedron {
         let field = Polyhedral::new(solid.mesh()).expect("full");
-        let extent = crate::kernel::field::Field::extent(&field).grown(by.max(0.0) + 1.0);
-        let tolerance = Tolerance::new(tolerance).expect("positive");
-        let start = std::time::Instant::now();
-        let found = level_set(
-            Apart::new(&field, by),
-            &extent,
-            tolerance,
-            &[Origin::of(Surface::Facets)],
-            |_| 0,
-        )
-        .expect("a solid");
-        eprintln!(
-            "by {by}: {} triangles, volume {}, {:?}, deviation {:?}",
-            triangles(&found),
-            volume(&found),
-            start.elapsed(),
-            crate::convert::offset::deviation(found.mesh(), &field, by),
-        );
+        let extent = field.extent().grown(by.max(0.0) + 1.0);
+        let fine = Tolerance::new(tolerance).expect("positive");
+        let round = [Origin::of(Surface::Facets)];
+        let found =
+            level_set(Apart::new(&field, by), &extent, fine, &round, |_| 0).expect("a solid");
+        let off = deviation(found.mesh(), &field, by).expect("full");
+        assert!(off.most <= tolerance, "off by {} at {}", off.most, off.at);
         found
     }
 
     #[test]
     fn a_box_grows_and_shrinks() {
         let block = cuboid(DVec3::ZERO, dvec3(10.0, 20.0, 30.0));
-        let round = grown(&block, 2.0, 0.015);
+        let round = grown(&block, 2.0, 0.02);
         assert!((volume(&round) - 11187.492558).abs() < 12.0);
-        let sharp = grown(&block, -2.0, 0.015);
-        assert!((volume(&sharp) - 2496.0).abs() < 1e-6);
+        let sharp = grown(&block, -2.0, 0.02);
+        assert!((volume(&sharp) - 2496.0).abs() < 1e-4, "{}", volume(&sharp));
     }
 
     fn charge(x: f64, q: f64) -> Charge {
@@ -165,23 +155,14 @@ mod tests {
         use std::f64::consts::PI;
         let fine = Tolerance::new(0.005).expect("positive");
         for threshold in [0.1, 0.5, 2.0] {
-            let start = std::time::Instant::now();
             let ball = metaball(&[charge(0.0, 1.0)], threshold, fine).expect("a ball");
             let expected = 4.0 / 3.0 * PI / (threshold * threshold * threshold);
-            eprintln!(
-                "ball: {} {} of {expected} {:?}",
-                triangles(&ball),
-                volume(&ball),
-                start.elapsed()
-            );
             let slack = 1e-3 * expected + 4.0 * PI / (threshold * threshold) * 0.005;
             assert!((volume(&ball) - expected).abs() < slack);
         }
         let two = [charge(-2.0, 1.0), charge(2.0, 1.0)];
         let pieces = |threshold: f64| {
-            let start = std::time::Instant::now();
             let found = metaball(&two, threshold, fine).expect("a solid");
-            eprintln!("two: {} {:?}", triangles(&found), start.elapsed());
             shells(&found)
         };
         assert_eq!([pieces(0.98), pieces(1.02)], [1, 2]);

@@ -26,6 +26,14 @@ use katachi::{
 /// Runs of each case.
 const RUNS: usize = 5;
 
+/// Milliseconds that work takes, and what it makes.
+#[allow(clippy::disallowed_methods, reason = "timing is its work")]
+fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
+    let start = Instant::now();
+    let made = work();
+    (start.elapsed().as_secs_f64() * 1e3, made)
+}
+
 fn moved(solid: Polyhedron, by: DVec3) -> Polyhedron {
     solid.placed(&Placement::translation(by))
 }
@@ -64,9 +72,8 @@ fn case(name: &str, work: impl Fn() -> Polyhedron, off: impl Fn(&Polyhedron) -> 
     let mut least = f64::INFINITY;
     let mut made = Polyhedron::empty();
     for _ in 0..RUNS {
-        let start = Instant::now();
-        made = work();
-        least = least.min(start.elapsed().as_secs_f64() * 1e3);
+        let (taken, found) = timed(&work);
+        (least, made) = (least.min(taken), found);
     }
     let (triangles, volume) = (measure::triangles(&made), measure::volume(&made));
     println!("{name}\t{least:.2}\t{triangles}\t{volume:.4}\t{:.5}", off(&made));
@@ -85,9 +92,8 @@ fn closest(name: &str, solid: &Polyhedron, reach: f64) {
     let field = Polyhedral::new(solid.mesh()).expect("full");
     let part = |i: usize, step: f64| ((i as f64 * step).fract() - 0.5) * 2.0 * reach;
     let at = |i: usize| dvec3(part(i, 0.819_172_5), part(i, 0.671_043_6), part(i, 0.549_700_4));
-    let start = Instant::now();
-    let sum: f64 = (0..POINTS).map(|i| field.nearest(at(i)).distance).sum();
-    let rate = POINTS as f64 / start.elapsed().as_secs_f64() / 1e6;
+    let (taken, sum) = timed(|| (0..POINTS).map(|i| field.nearest(at(i)).distance).sum::<f64>());
+    let rate = POINTS as f64 / taken / 1e3;
     println!("{name}\t{rate:.3} M/s\t{}\t{sum:.1}", measure::triangles(solid));
 }
 

@@ -201,7 +201,6 @@ fn fillets_have_the_volumes_of_closed_forms() {
     };
     for allowed in [0.01, 0.005] {
         let found = change(allowed);
-        eprintln!("fillet change {allowed}: {found}");
         assert!((found + 35.16).abs() < 0.001 * 35.16, "{found} at {allowed}");
     }
 }

@@ -97,7 +97,8 @@ pub(super) fn unary(op: Unary, x: &Jet) -> Jet {
 
 /// The sine of degrees.
 fn sine(v: Interval) -> Interval {
-    if !(v.high - v.low < 360.0) {
+    let wide = v.high - v.low;
+    if wide.is_nan() || wide >= 360.0 {
         return Interval::new(-1.0, 1.0);
     }
     let reaches = |peak: f64| {

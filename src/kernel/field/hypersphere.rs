@@ -144,7 +144,7 @@ impl<'a> Hypersphere<'a> {
             _ => vec![],
         };
         // The distance of the middle of an area is that of its best point within the radius times its reach.
-        let least = (tolerance.mm() / (4.0 * by.abs())).clamp(LEAST_REACH, 1.0);
+        let least = (tolerance.mm() / (2.0 * by.abs())).clamp(LEAST_REACH, 1.0);
         let fine = |patch: &Patch| match test {
             Test::MonteCarlo { .. } => patch.points.len() <= FEW,
             _ => patch.reach() <= least,

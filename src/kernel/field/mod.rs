@@ -29,6 +29,7 @@ mod lathe;
 mod local;
 mod metaball;
 mod outline;
+mod pieces;
 mod polyhedral;
 mod round;
 pub mod smooth;

@@ -16,6 +16,7 @@ use rustc_hash::FxHashMap;
 
 use super::{
     Field, Local,
+    pieces::Pieces,
     tree::Tree,
     triangle::{Feature, Part, Triangle},
 };
@@ -142,21 +143,9 @@ impl Polyhedral {
 
     /// A point of every piece of the boundary, in the order of the triangles.
     pub(super) fn pieces(&self) -> Vec<DVec3> {
-        let mut joined: Vec<u32> = (0..self.points.len() as u32).collect();
-        let first_of = |joined: &mut [u32], mut i: u32| {
-            while joined[i as usize] != i {
-                joined[i as usize] = joined[joined[i as usize] as usize];
-                i = joined[i as usize];
-            }
-            i
-        };
-        for facet in &self.facets {
-            let [a, b, c] = facet.corners.map(|corner| first_of(&mut joined, corner));
-            let least = a.min(b).min(c);
-            [a, b, c].iter().for_each(|i| joined[*i as usize] = least);
-        }
-        let roots = self.facets.iter().map(|f| first_of(&mut joined, f.corners[0]));
-        let mut roots: Vec<u32> = roots.collect();
+        let mut pieces = Pieces::new(self.points.len());
+        self.facets.iter().for_each(|f| pieces.join(f.corners));
+        let mut roots: Vec<u32> = self.facets.iter().map(|f| pieces.of(f.corners[0])).collect();
         roots.sort_unstable();
         roots.dedup();
         roots.into_iter().map(|i| self.points[i as usize]).collect()

@@ -12,6 +12,7 @@ use super::{
     lattice::{Corner, edge},
     octree::Octree,
 };
+use crate::kernel::field::pieces::Pieces;
 
 /// No segment: the leaf stands twice in the ring.
 pub(super) const NONE: u32 = u32::MAX;
@@ -43,15 +44,14 @@ pub(super) struct Loops {
 impl Loops {
     pub fn new<L: Level>(tree: &Octree<L>, edges: &[Edge]) -> Loops {
         let (segments, sides) = segments(tree, edges);
-        let mut joined: Vec<u32> = (0..4 * edges.len() as u32).collect();
+        let mut joined = Pieces::new(4 * edges.len());
         let place = |e: u32, cell: u32| {
             let ring = &edges[e as usize].ring;
             4 * e + ring.iter().position(|&c| c == cell).expect("around its edge") as u32
         };
         for segment in &segments {
             for cell in segment.cells {
-                let [a, b] = segment.ends.map(|e| first_of(&mut joined, place(e, cell)));
-                joined[a.max(b) as usize] = a.min(b);
+                joined.join(segment.ends.map(|e| place(e, cell)));
             }
         }
         Loops::numbered(edges, segments, sides, &mut joined)
@@ -62,20 +62,20 @@ impl Loops {
         edges: &[Edge],
         segments: Vec<Segment>,
         sides: Vec<[u32; 4]>,
-        joined: &mut [u32],
+        joined: &mut Pieces,
     ) -> Loops {
-        let (mut cells, mut number) = (vec![], vec![NONE; joined.len()]);
+        let (mut cells, mut number) = (vec![], vec![NONE; 4 * edges.len()]);
         let mut pieces = vec![[NONE; 4]; edges.len()];
         let mut counted: Vec<(u32, u32)> = vec![];
         for (e, of) in edges.iter().enumerate() {
-            for k in 0..4 {
+            for (k, piece) in pieces[e].iter_mut().enumerate() {
                 let same = of.ring.iter().position(|c| *c == of.ring[k]).unwrap_or(k);
-                let root = first_of(joined, (4 * e + same) as u32) as usize;
+                let root = joined.of((4 * e + same) as u32) as usize;
                 if number[root] == NONE {
                     number[root] = cells.len() as u32;
                     cells.push(of.ring[k]);
                 }
-                pieces[e][k] = number[root];
+                *piece = number[root];
                 if same == k {
                     counted.push((number[root], e as u32));
                 }
@@ -94,15 +94,6 @@ impl Loops {
         let [from, to] = [0, 1].map(|i| self.starts[piece as usize + i] as usize);
         &self.members[from..to]
     }
-}
-
-/// The first of what was joined to something.
-fn first_of(joined: &mut [u32], mut i: u32) -> u32 {
-    while joined[i as usize] != i {
-        joined[i as usize] = joined[joined[i as usize] as usize];
-        i = joined[i as usize];
-    }
-    i
 }
 
 /// The segments of all faces, and for each edge those at the sides of its ring.

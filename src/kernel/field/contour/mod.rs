@@ -203,6 +203,7 @@ impl<L: Level> Contour<L> {
             self.check_size(&deviations)?;
             let coarse = self.coarse(&deviations);
             if coarse.is_empty() && !self.cut_doubled() {
+                self.surface.drop_crumbs(2.0 * self.tolerance);
                 return Ok(());
             }
             self.tree.split(coarse)?;

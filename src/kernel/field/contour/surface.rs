@@ -17,7 +17,7 @@ use super::{
     octree::Octree,
     vertex::{Sample, inset, root, towards, vertex},
 };
-use crate::geom::Bounds;
+use crate::{geom::Bounds, kernel::field::pieces::Pieces};
 
 /// Quadrilaterals whose diagonals are nearer to each other than this, squared and relative to the shorter one, are
 /// flat.
@@ -97,6 +97,24 @@ impl Surface {
     }
 }
 
+impl Surface {
+    /// Leaves out pieces that fit into a box of some size: what is left of walls and gaps too thin to be sought.
+    pub fn drop_crumbs(&mut self, size: f64) {
+        let mut pieces = Pieces::new(self.points.len());
+        self.triangles.iter().for_each(|t| pieces.join(*t));
+        let mut boxes = vec![Bounds::EMPTY; self.points.len()];
+        for i in 0..self.points.len() as u32 {
+            let piece = &mut boxes[pieces.of(i) as usize];
+            *piece = piece.joined(&Bounds::of([self.points[i as usize]]));
+        }
+        let mut is_large = |i: u32| {
+            let piece = boxes[pieces.of(i) as usize];
+            (piece.max - piece.min).max_element() > size
+        };
+        self.triangles.retain(|t| is_large(t[0]));
+    }
+}
+
 impl<L: Level> Maker<'_, L> {
     fn add(&mut self, point: DVec3, cell: u32) -> u32 {
         self.out.points.push(point);
@@ -128,8 +146,8 @@ impl<L: Level> Maker<'_, L> {
             let halves = |e: usize| self.is_shorter(e);
             (0..self.edges.len()).into_par_iter().map(halves).collect()
         };
-        for e in 0..self.edges.len() {
-            self.polygon(e, split[e]);
+        for (e, &first) in split.iter().enumerate() {
+            self.polygon(e, first);
         }
     }
 

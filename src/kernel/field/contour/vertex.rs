@@ -14,7 +14,7 @@ const NEWTON_STEPS: usize = 4;
 /// A share of the tolerance that is as good as none.
 const NEGLIGIBLE: f64 = 1.0 / 64.0;
 /// Directions in which planes disagree by less than this, relative to the main one, are taken for curvature.
-const FLAT: f64 = 0.1;
+const FLAT: f64 = 0.03;
 /// Points stay away from the faces of their cell by this share of its size.
 const INSET: f64 = 1e-3;
 
