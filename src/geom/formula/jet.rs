@@ -3,6 +3,8 @@
 //! Moore, R. E.: *Interval analysis*, 1966; derivatives by the chain rule, forwards. Where a function may jump
 //! within the box nothing is known of its derivatives.
 
+use glam::DVec3;
+
 use super::{super::trig, Binary, Interval, Unary};
 
 /// Degrees to radians.
@@ -28,6 +30,19 @@ impl Jet {
         let mut slope = [Interval::ZERO; 3];
         slope[axis] = Interval::point(1.0);
         Jet { value, slope }
+    }
+
+    /// The same, its value no farther from that in the middle of the box than the derivatives allow (the mean value
+    /// theorem): for small boxes that is much closer.
+    pub(super) fn around(self, middle: f64, half: DVec3) -> Jet {
+        /// What rounding may add, relative to the value.
+        const ROUNDING: f64 = 1e-14;
+        let spread: f64 = (0..3).map(|i| self.slope[i].size() * half[i]).sum();
+        let reach = spread + ROUNDING * (middle.abs() + spread);
+        let low = self.value.low.max(middle - reach);
+        let high = self.value.high.min(middle + reach);
+        let value = if low <= high { Interval { low, high } } else { self.value };
+        Jet { value, ..self }
     }
 
     /// A value whose derivatives are those of an argument times a factor.

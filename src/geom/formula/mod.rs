@@ -191,6 +191,11 @@ impl Formula {
 
     /// The value at a point; NaN where there is none.
     pub fn value(&self, p: DVec3) -> f64 {
+        self.values(p).last().copied().unwrap_or(f64::NAN)
+    }
+
+    /// The values of all steps at a point.
+    fn values(&self, p: DVec3) -> Vec<f64> {
         let mut values: Vec<f64> = Vec::with_capacity(self.ops.len());
         for op in &self.ops {
             let of = |i: u32| values[i as usize];
@@ -207,7 +212,7 @@ impl Formula {
             };
             values.push(value);
         }
-        values.last().copied().unwrap_or(f64::NAN)
+        values
     }
 
     /// What values and derivatives lie between over a box.
@@ -289,8 +294,10 @@ impl Formula {
 
     /// Values and derivatives of all steps over a box.
     fn jets(&self, cell: &Bounds) -> Vec<Jet> {
+        let half = (cell.max - cell.min) / 2.0;
+        let middle = if half == DVec3::ZERO { vec![] } else { self.values(cell.center()) };
         let mut jets: Vec<Jet> = Vec::with_capacity(self.ops.len());
-        for op in &self.ops {
+        for (i, op) in self.ops.iter().enumerate() {
             let of = |i: u32| &jets[i as usize];
             let jet = match *op {
                 Op::Axis(axis) => Jet::axis(axis, Interval::new(cell.min[axis], cell.max[axis])),
@@ -299,7 +306,7 @@ impl Formula {
                 Op::Binary(op, a, b) => jet::binary(op, of(a), of(b)),
                 Op::Choose(a, b, c) => jet::choose(of(a), of(b), of(c)),
             };
-            jets.push(jet);
+            jets.push(middle.get(i).map_or(jet, |&value| jet.around(value, half)));
         }
         jets
     }
