@@ -63,7 +63,7 @@
 //! | [`eval`] | names, values, dimensions, calls; binds `stdlib/` to the graph |
 //! | [`input`] | readers of meshes, drawings and values |
 //! | [`kernel`] | exact polyhedra ([`kernel::brep`]), plane figures ([`kernel::profile`]) and distance fields ([`kernel::field`]) |
-//! | [`convert`] | offsets and fillets of polyhedra, held against their distance fields |
+//! | [`convert`] | offsets and fillets of polyhedra, held against their distance fields; solids of level sets |
 //! | [`realize`] | graph to solids |
 //! | [`output`] | writers of mesh files and OpenSCAD source, drawings ([`output::drawing`]), the sheets they stand on ([`output::sheet`]), half-tones ([`output::halftone`]) |
 //! | [`session`] | the one road through it all |
@@ -75,6 +75,9 @@
 //! |---|---|
 //! | S. Nagashima, *A spatial inclusion test for polyhedra using a spherical projection*, 1986 | [`geom::spherical_projection`], and the seeds of [`kernel::brep::boolean`] |
 //! | S. Tatehara, N. Tanaka, S. Tatsumi, K. Tokumasu, *Object-oriented expression for complex 3-D shapes* | [`kernel::field`], [`convert::offset`] |
+//! | T. Ju, F. Losasso, S. Schaefer, J. Warren, *Dual contouring of hermite data*; S. Schaefer, T. Ju, J. Warren, *Manifold dual contouring*; T. Ju, T. Udeshi, *Intersection-free contouring on an octree grid* | [`kernel::field::contour`] |
+//! | G. Wyvill, C. McPheeters, B. Wyvill, *Data structure for soft objects*; J. F. Blinn, *A generalization of algebraic surface drawing* | [`geom::charge`] |
+//! | R. E. Moore, *Interval analysis* | [`geom::formula`] |
 //! | T. Nishita, hidden lines and half-tones of three-dimensional scenes, 1972 (METHODS, section 3) | [`output::drawing`], [`output::halftone`] |
 
 pub mod app;

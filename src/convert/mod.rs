@@ -1,3 +1,4 @@
-//! Where kernels meet: solids become fields, and offsets of fields become solids.
+//! Where kernels meet: solids become fields, and fields become solids.
 
+pub mod contour;
 pub mod offset;

@@ -20,6 +20,7 @@ use super::{
 };
 use crate::{
     base::{Code, Diagnostic, FileError, SourceId, Span, path},
+    geom::formula::Recording,
     shape::{Geometry, GeometryError, ShapeGraph, geometry::Data},
     syntax::{self, ast},
 };
@@ -129,6 +130,10 @@ pub struct Evaluator<'h> {
     pub(super) library_call: Span,
     pub(super) messages: Messages,
     pub(super) test: Option<Running>,
+    /// Formulas of fields taken down so far.
+    pub(super) recording: Recording,
+    /// Fields whose formula is being taken down, one within the other.
+    pub(super) tracing: u32,
     /// Set while `check` runs: geometry is not asked.
     pub(super) dry: bool,
     /// Set when `check` met something it could not evaluate without geometry.
@@ -156,6 +161,8 @@ impl<'h> Evaluator<'h> {
             library_call: Span::default(),
             messages: Messages::default(),
             test: None,
+            recording: Recording::default(),
+            tracing: 0,
             dry: false,
             skipped: false,
         }

@@ -7,7 +7,7 @@ use rustc_hash::FxHashSet;
 use super::{
     dimension::Dimension,
     nearest::did_you_mean,
-    value::{Symbol, Value},
+    value::{Symbol, Traced, Value},
 };
 use crate::{
     base::{Code, Diagnostic},
@@ -50,6 +50,8 @@ pub enum Type {
     Curve,
     /// A surface.
     Surface,
+    /// The distance from a solid, everywhere.
+    Field,
     /// What can be moved: a solid, profile, curve or surface.
     Figure,
     /// A drawing.
@@ -67,7 +69,7 @@ pub enum Type {
 const NAMES: &[&str] = &[
     "Any", "Number", "Length", "Angle", "Area", "Volume", "Quantity", "Count", "Bool", "String",
     "List", "Record", "Range", "Function", "Solid", "Profile", "Shape", "Curve", "Surface",
-    "Figure", "Drawing", "Picture", "Page", "Optional", "Point", "Vector",
+    "Field", "Figure", "Drawing", "Picture", "Page", "Optional", "Point", "Vector",
 ];
 
 /// Why a value does not fit.
@@ -101,6 +103,7 @@ impl Type {
             "Shape" => Type::Shape,
             "Curve" => Type::Curve,
             "Surface" => Type::Surface,
+            "Field" => Type::Field,
             "Figure" => Type::Figure,
             "Drawing" => Type::Drawing,
             "Picture" => Type::Picture,
@@ -142,6 +145,9 @@ impl Type {
             | (Type::Function, Value::Function(_))
             | (Type::Curve, Value::Curve(_))
             | (Type::Surface, Value::Surface(_))
+            | (Type::Field, Value::Field(_))
+            | (Type::Quantity, Value::Traced(Traced { dimension: Some(_), .. }))
+            | (Type::Bool, Value::Traced(Traced { dimension: None, .. }))
             | (Type::Figure, Value::Curve(_) | Value::Surface(_))
             | (Type::Drawing, Value::Drawing(_))
             | (Type::Picture, Value::Picture(_))
@@ -149,6 +155,9 @@ impl Type {
             | (Type::Optional(_), Value::Symbol(Symbol::None)) => Ok(()),
             (Type::Optional(inner), value) => inner.check(graph, value),
             (Type::Number(needed), Value::Number(_, found)) => {
+                self.check_number(*needed, *found, value)
+            }
+            (Type::Number(needed), Value::Traced(Traced { dimension: Some(found), .. })) => {
                 self.check_number(*needed, *found, value)
             }
             (Type::Count, Value::Number(number, Dimension::BARE)) => {
@@ -270,13 +279,15 @@ impl Type {
         let mut dimension = Dimension::BARE;
         let sized = list.len() == 2 || list.len() == 3;
         let uniform = list.iter().all(|item| match item {
-            Value::Number(_, found) => match dimension.common(*found) {
-                Some(common) => {
-                    dimension = common;
-                    true
+            Value::Number(_, found) | Value::Traced(Traced { dimension: Some(found), .. }) => {
+                match dimension.common(*found) {
+                    Some(common) => {
+                        dimension = common;
+                        true
+                    }
+                    None => false,
                 }
-                None => false,
-            },
+            }
             _ => false,
         });
         let lengths = matches!(dimension, Dimension::BARE | Dimension::LENGTH);
@@ -292,6 +303,9 @@ impl Type {
         match (self, value) {
             (Type::Number(needed), Value::Number(number, Dimension::BARE)) => {
                 Value::Number(number, *needed)
+            }
+            (Type::Number(needed), Value::Traced(traced)) => {
+                Value::Traced(Traced { dimension: Some(*needed), ..traced })
             }
             (Type::Optional(inner), value) if !matches!(value, Value::Symbol(Symbol::None)) => {
                 inner.convert(graph, value)
@@ -309,6 +323,10 @@ impl Type {
             (Type::Point, Value::List(list)) => {
                 let lengths = list.iter().map(|item| match item {
                     Value::Number(number, _) => Value::length(*number),
+                    Value::Traced(Traced { step, .. }) => {
+                        let dimension = Some(Dimension::LENGTH);
+                        Value::Traced(Traced { step: *step, dimension })
+                    }
                     other => other.clone(),
                 });
                 Value::list(lengths.collect())
@@ -365,6 +383,7 @@ impl Type {
             Type::Shape => "a solid or a profile".into(),
             Type::Curve => "a curve".into(),
             Type::Surface => "a surface".into(),
+            Type::Field => "a field".into(),
             Type::Figure => "a solid, profile, curve or surface".into(),
             Type::Drawing => "a drawing".into(),
             Type::Picture => "a picture".into(),
@@ -447,6 +466,7 @@ impl fmt::Display for Type {
             Type::Shape => "Shape",
             Type::Curve => "Curve",
             Type::Surface => "Surface",
+            Type::Field => "Field",
             Type::Figure => "Figure",
             Type::Drawing => "Drawing",
             Type::Picture => "Picture",

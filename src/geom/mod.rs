@@ -2,9 +2,11 @@
 
 pub mod bounds;
 pub mod bvh;
+pub mod charge;
 pub mod curved_grid;
 pub mod development;
 pub mod flatten;
+pub mod formula;
 pub mod mesh;
 pub mod nearest;
 pub mod orient;
@@ -27,7 +29,9 @@ pub mod view;
 pub mod wide;
 
 pub use bounds::Bounds;
+pub use charge::{Charge, Falloff};
 pub use curved_grid::{CurvedGrid, GridError};
+pub use formula::Formula;
 pub use mesh::{FaceRef, Origin, PolyMesh};
 pub use placement::Placement;
 pub use raster::Raster;

@@ -272,6 +272,8 @@ fn is_heavy(graph: &ShapeGraph, id: ShapeId) -> bool {
         | Node::Revolve { .. }
         | Node::Thickened { .. }
         | Node::Filled { .. }
+        | Node::Metaball { .. }
+        | Node::Formula { .. }
         | Node::Offset { .. }
         | Node::Fillet { .. } => true,
         Node::Extrude { twist, .. } => *twist != 0.0,

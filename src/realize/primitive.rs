@@ -11,8 +11,8 @@ use super::{
 };
 use crate::{
     base::{Code, Diagnostic},
-    convert::offset::fillet,
-    geom::{Region, sides as count},
+    convert::{contour, offset::fillet},
+    geom::{Bounds, Region, sides as count},
     kernel::brep::{
         Polyhedron,
         extrude::{ExtrudeError, extrude},
@@ -137,9 +137,16 @@ pub fn make(realizer: &Realizer, graph: &ShapeGraph, unit: Stretched) -> Made<Po
         }
         Node::Thickened { surface, t } => sheet::thickened(surface, *t).at(origin),
         Node::Filled { surface, base } => sheet::filled(surface, *base).at(origin),
-        Node::Offset { child, radii } => {
+        Node::Offset { child, radii, by } => {
             let solid = realizer.solid_made(graph, *child, unit.stretch)?;
-            morphology::offset(&solid.polyhedron, *radii, tolerance).at(origin)
+            morphology::offset(&solid.polyhedron, *radii, *by, tolerance).at(origin)
+        }
+        Node::Metaball { charges, threshold } => {
+            contour::metaball(charges, *threshold, tolerance).at(origin)
+        }
+        Node::Formula { formula, within } => {
+            contour::formula(formula, &Bounds { min: within[0], max: within[1] }, tolerance)
+                .at(origin)
         }
         Node::Fillet { child, convex, concave } => {
             let solid = realizer.solid_made(graph, *child, unit.stretch)?;

@@ -12,7 +12,7 @@ use super::{
     drawing::CurveSpec,
     node::{Heal, Node, ShapeId, TextSpec},
 };
-use crate::geom::CurvedGrid;
+use crate::geom::{Charge, CurvedGrid, Falloff, formula::Op};
 
 /// The fingerprint of a node.
 pub(super) fn fingerprint(node: &Node) -> u64 {
@@ -82,6 +82,14 @@ impl Feed {
                 file.hash(&mut self.0);
                 self.heal(*heal);
             }
+            Node::Metaball { charges, threshold } => {
+                self.real(*threshold);
+                charges.iter().for_each(|charge| self.charge(charge));
+            }
+            Node::Formula { formula, within } => {
+                within.iter().for_each(|&corner| self.space(corner));
+                formula.ops().iter().for_each(|&op| self.op(op));
+            }
             Node::Hull(list)
             | Node::Union(list)
             | Node::Difference(list)
@@ -105,8 +113,8 @@ impl Feed {
                 profile.hash(&mut self.0);
                 self.real(*distance);
             }
-            Node::Offset { child, radii } => {
-                child.hash(&mut self.0);
+            Node::Offset { child, radii, by } => {
+                (child, by).hash(&mut self.0);
                 self.space(*radii);
             }
             Node::Fillet { child, convex, concave } => {
@@ -117,6 +125,27 @@ impl Feed {
             Node::Tag { name, child } => (name, child).hash(&mut self.0),
             Node::Paint { color, child } => (color, child).hash(&mut self.0),
             _ => unreachable!("all other nodes are hashed by `node`"),
+        }
+    }
+
+    fn charge(&mut self, charge: &Charge) {
+        self.space(charge.at);
+        self.real(charge.q);
+        match charge.falloff {
+            Falloff::Inverse => self.0.write_u8(0),
+            Falloff::InverseSquare => self.0.write_u8(1),
+            Falloff::Wyvill { r } => self.sized(&[2.0, r], None),
+            Falloff::Blinn { r } => self.sized(&[3.0, r], None),
+        }
+    }
+
+    fn op(&mut self, op: Op) {
+        match op {
+            Op::Axis(axis) => axis.hash(&mut self.0),
+            Op::Constant(x) => self.real(x),
+            Op::Unary(op, a) => (op, a).hash(&mut self.0),
+            Op::Binary(op, a, b) => (op, a, b).hash(&mut self.0),
+            Op::Choose(a, b, c) => (a, b, c).hash(&mut self.0),
         }
     }
 

@@ -15,5 +15,5 @@ pub use drawing::{CurveSpec, PageSpec, ViewSpec};
 pub use geometry::{Geometry, GeometryError, Measures};
 pub use graph::ShapeGraph;
 pub use halftone::ShadeSpec;
-pub use node::{Kind, Node, ShapeId};
+pub use node::{Kind, Node, ShapeId, SphereTest};
 pub use stretched::Stretched;

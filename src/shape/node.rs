@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use super::drawing::FiguresSpec;
-use crate::geom::{CurvedGrid, Placement, mesh::Color};
+use crate::geom::{Charge, CurvedGrid, Formula, Placement, mesh::Color};
 
 /// Names a node of one [`ShapeGraph`](super::ShapeGraph).
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -51,6 +51,23 @@ pub enum VerticalAlign {
     Baseline,
     /// Its bottom at y = 0.
     Bottom,
+}
+
+/// How a point is told to be in a solid grown or shrunk: by what its sphere meets.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+pub enum SphereTest {
+    /// By the nearest point of the boundary.
+    #[default]
+    Exact,
+    /// By halving the unrolled sphere.
+    Quadtree,
+    /// By random points of the sphere.
+    MonteCarlo {
+        /// How many.
+        n: u32,
+        /// Where the random numbers begin.
+        seed: u64,
+    },
 }
 
 /// What a text profile is made of.
@@ -206,6 +223,8 @@ pub enum Node {
         child: ShapeId,
         /// The radii along the axes.
         radii: DVec3,
+        /// How points are told to be in it.
+        by: SphereTest,
     },
     /// A solid or a profile whose edges or corners are rounded.
     Fillet {
@@ -215,6 +234,21 @@ pub enum Node {
         convex: f64,
         /// The radius of what was concave.
         concave: f64,
+    },
+
+    /// Where the potentials of charges together reach a threshold.
+    Metaball {
+        /// The charges.
+        charges: Arc<[Charge]>,
+        /// The threshold, above 0.
+        threshold: f64,
+    },
+    /// Where a formula is not positive.
+    Formula {
+        /// The formula.
+        formula: Arc<Formula>,
+        /// Two corners of the box that it is sought in.
+        within: [DVec3; 2],
     },
 
     /// The union of solids, or of profiles in one plane.

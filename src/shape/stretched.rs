@@ -82,6 +82,8 @@ pub(super) fn curves(node: &Node, child: impl Fn(ShapeId) -> u32) -> u32 {
         | Node::ImportProfile { .. }
         | Node::OffsetProfile { .. }
         | Node::RoundProfile { .. }
+        | Node::Metaball { .. }
+        | Node::Formula { .. }
         | Node::Offset { .. }
         | Node::Fillet { .. } => true,
         _ => false,

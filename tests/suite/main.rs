@@ -13,6 +13,7 @@ mod golden;
 mod grammar;
 mod halftone;
 mod laws;
+mod level_sets;
 mod made;
 mod openscad;
 mod readers;

@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use crate::geom::spherical_projection::spherical_triangle;
+
 /// Points of an arc from `a` to `b` about the origin, both included: of a circle if they are of one length,
 /// of an ellipse with both on it otherwise. `count` chords of equal angles.
 pub(super) fn arc(a: DVec3, b: DVec3, count: u32) -> Vec<DVec3> {
@@ -17,6 +19,56 @@ pub(super) fn arc(a: DVec3, b: DVec3, count: u32) -> Vec<DVec3> {
             }
         })
         .collect()
+}
+
+/// Moves the inner points of an arc of unit radius outwards, by no more than `most`, so that its chords enclose as
+/// much area as the arc: volumes come out right, and chords are nearer to the arc. With a `bulge` other than 1 they
+/// move so many times as far.
+///
+/// With k chords over angles 2 a and inner points at the radius q, twice the area is
+/// sin 2 a (2 q + (k - 2) q^2); that of the arc is 2 a k.
+pub(super) fn evened(mut points: Vec<DVec3>, bulge: f64, most: f64) -> Vec<DVec3> {
+    let count = points.len() - 1;
+    if count < 2 {
+        return points;
+    }
+    let (k, step) = (count as f64, points[0].angle(points[count]) / count as f64);
+    let needed = step * k / libm::sin(step);
+    let radius = match count {
+        2 => needed / 2.0,
+        _ => ((1.0 + (k - 2.0) * needed).sqrt() - 1.0) / (k - 2.0),
+    };
+    let factor = (1.0 + (radius - 1.0) * bulge).clamp(1.0, 1.0 + most);
+    points[1..count].iter_mut().for_each(|p| *p *= factor);
+    points
+}
+
+/// Moves the inner points of a cap outwards, by no more than `most`, so that its triangles enclose as much volume
+/// as the cap of the sphere. `points` are those of the ring, then `inner` more.
+pub(super) fn swollen(
+    points: &mut [DVec3],
+    inner: std::ops::Range<usize>,
+    triangles: &[[u32; 3]],
+    most: f64,
+) {
+    let corners = |points: &[DVec3], t: &[u32; 3]| t.map(|i| points[i as usize]);
+    let round = |t: &[u32; 3]| spherical_triangle(corners(points, t).map(DVec3::normalize));
+    let wanted = triangles.iter().map(round).sum::<f64>() / 3.0;
+    let volume = |points: &[DVec3]| {
+        let cone = |t: &[u32; 3]| {
+            let [a, b, c] = corners(points, t);
+            a.dot(b.cross(c)) / 6.0
+        };
+        triangles.iter().map(cone).sum::<f64>()
+    };
+    let held = volume(points);
+    let mut moved = points.to_vec();
+    moved[inner.clone()].iter_mut().for_each(|p| *p *= 1.0 + most);
+    let gained = volume(&moved) - held;
+    if gained > 0.0 && wanted > held {
+        let factor = 1.0 + most * ((wanted - held) / gained).min(1.0);
+        points[inner].iter_mut().for_each(|p| *p *= factor);
+    }
 }
 
 /// The angle between two vectors.
@@ -149,6 +201,28 @@ mod tests {
         assert!(edges.windows(2).all(|w| w[0] != w[1]));
         let open = edges.iter().filter(|(a, b)| edges.binary_search(&(*b, *a)).is_err());
         assert_eq!(open.count(), ring.len());
+    }
+
+    #[test]
+    fn evened_arcs_and_swollen_caps_enclose_what_is_round() {
+        let points = evened(arc(DVec3::X, DVec3::Y, 6), 1.0, 0.1);
+        let area: f64 = points.windows(2).map(|w| w[0].cross(w[1]).z).sum::<f64>() / 2.0;
+        assert!((area - std::f64::consts::PI / 4.0).abs() < 1e-12, "{area}");
+        let quarter = |a, b| evened(arc(a, b, 8), 1.0, 0.1)[..8].to_vec();
+        let ring: Vec<DVec3> = [(DVec3::X, DVec3::Y), (DVec3::Y, DVec3::Z), (DVec3::Z, DVec3::X)]
+            .into_iter()
+            .flat_map(|(a, b)| quarter(a, b))
+            .collect();
+        let (more, triangles) = cap(&ring, 0.2);
+        let mut all: Vec<DVec3> = ring.iter().chain(&more).copied().collect();
+        let inner = ring.len()..all.len();
+        swollen(&mut all, inner, &triangles, 0.1);
+        let cone = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|i| all[i as usize]);
+            a.dot(b.cross(c)) / 6.0
+        };
+        let volume: f64 = triangles.iter().map(cone).sum();
+        assert!((volume / (std::f64::consts::PI / 6.0) - 1.0).abs() < 1e-5, "{volume}");
     }
 
     #[test]

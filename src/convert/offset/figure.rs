@@ -8,7 +8,7 @@
 use glam::DVec3;
 
 use super::{
-    arc::{Angle, arc, cap},
+    arc::{Angle, arc, cap, evened, swollen},
     mitre::mitre,
     rings::{Bend, Rings},
 };
@@ -26,6 +26,8 @@ pub(super) struct Measure {
     pub crowd: usize,
     /// What a chord may be off its arc, in radii.
     pub chord: f64,
+    /// How much the inner points of arcs move outwards, relative to what makes the area of an arc right.
+    pub bulge: f64,
     /// What a mitre may be off its planes, and an arc off its edge, in radii.
     pub joint: f64,
 }
@@ -143,6 +145,7 @@ impl Surroundings {
     ) -> Option<()> {
         let points = self.arc_over(sharp[1], joints[0], joints[1], measure.chord, measure)?;
         self.fits(sharp[0], &points, measure)?;
+        let points = evened(points, measure.bulge, measure.chord);
         let inner = points.len() as u32 - 2;
         figure.points.extend(&points[1..points.len() - 1]);
         let chain: Vec<u32> = [0].into_iter().chain(2..2 + inner).chain([1]).collect();
@@ -168,6 +171,7 @@ impl Surroundings {
             let next = (i + 1) % k;
             let chord = CAP * measure.chord;
             let points = self.arc_over(sharp[next], joints[i], joints[next], chord, measure)?;
+            let points = evened(points, measure.bulge, chord);
             let first = figure.points.len() as u32;
             figure.points.extend(&points[1..points.len() - 1]);
             let inner = first..figure.points.len() as u32;
@@ -184,6 +188,8 @@ impl Surroundings {
             None => first + v - numbers.len() as u32,
         };
         figure.cap = triangles.into_iter().map(|t| t.map(number)).collect();
+        let inner = first as usize..figure.points.len();
+        swollen(&mut figure.points, inner, &figure.cap, measure.chord);
         Some(())
     }
 
@@ -219,6 +225,7 @@ impl Surroundings {
         }
         let (from, to) = (self.normals[last], self.normals[first]);
         let flat = arc(from, to, chords(from.angle(to), measure.chord));
+        let flat = evened(flat, measure.bulge, measure.chord);
         let put = |d: &DVec3| *d + self.edges[edge] * ((1.0 - d.dot(plane)) / lean);
         let points: Vec<DVec3> = flat.iter().map(put).collect();
         if points.iter().any(|p| p.length() > LONGEST) {
@@ -275,7 +282,11 @@ impl Surroundings {
             return vec![];
         }
         let (from, to) = (self.normals[edge], self.normals[(edge + 1) % self.len()]);
-        let points = arc(from, to, chords(from.angle(to), measure.chord));
+        let points = evened(
+            arc(from, to, chords(from.angle(to), measure.chord)),
+            measure.bulge,
+            measure.chord,
+        );
         points[1..points.len() - 1].to_vec()
     }
 }

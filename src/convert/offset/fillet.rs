@@ -12,7 +12,7 @@
 //! would be nothing, so where something would be lost the middle step is shorter by a trifle, and the last one
 //! too.
 
-use super::{OffsetError, extended, offset};
+use super::{OffsetError, extended, offset, offset_before};
 use crate::{
     geom::Tolerance,
     kernel::{
@@ -45,12 +45,15 @@ pub fn fillet(
     tolerance: Tolerance,
 ) -> Result<Polyhedron, OffsetError> {
     let closed = extended(solid, concave, tolerance)?;
-    let core = offset(&closed, -(convex + concave), tolerance)?;
+    // What chords of the middle step are off shows in the volume of concave fillets, whose radius is what is left
+    // of its own after the last step.
+    let fine = if concave > 0.0 && convex > 0.0 { tolerance.half().half() } else { tolerance };
+    let core = offset_before(&closed, -(convex + concave), convex, fine)?;
     let Some([low, high]) = measure::bounds(&closed).filter(|_| convex > 0.0) else {
         return Ok(core);
     };
     let less = (LESS * (high - low).max_element()).min(convex / 2.0);
-    let wider = offset(&closed, less - (convex + concave), tolerance)?;
+    let wider = offset_before(&closed, less - (convex + concave), convex - less, fine)?;
     if holds_all(&core, &wider, less) {
         return offset(&core, convex, tolerance);
     }

@@ -8,8 +8,10 @@
 //! solid grown, found by exact set operations. Shrinking is growing the complement.
 //!
 //! Whether the result is right is not taken on trust: [`Polyhedral`] tells the true distance of its corners,
-//! the middles of its edges and of its triangles.
+//! the middles of its edges and of its triangles. Where the surface lies over itself at too many places to be freed
+//! of its crossings, the distance itself is contoured ([`apart`]), with more triangles.
 
+mod apart;
 mod arc;
 mod figure;
 mod fillet;
@@ -24,14 +26,17 @@ use glam::{DMat3, DVec3};
 use thiserror::Error;
 
 use self::{
+    apart::apart,
     figure::Measure,
     proof::missing,
     surface::{Raw, TooMany},
 };
 pub use self::{
+    apart::tested,
     fillet::fillet,
     proof::{Deviation, deviation},
 };
+use super::contour::LevelSetError;
 use crate::{
     geom::{Placement, Surface, Tolerance, sides},
     kernel::{
@@ -74,6 +79,9 @@ pub enum OffsetError {
     /// The set operation that frees the surface of its crossings failed.
     #[error(transparent)]
     Boolean(#[from] BooleanError),
+    /// The level set that stands in for such a surface failed.
+    #[error(transparent)]
+    LevelSet(#[from] LevelSetError),
     /// The result is farther from the distance than the tolerance.
     #[error("the offset is off by {found:.3e} mm near ({}, {}, {}); the tolerance is {allowed} mm", .at.x, .at.y, .at.z)]
     Inexact {
@@ -111,21 +119,34 @@ pub fn offset(
     by: f64,
     tolerance: Tolerance,
 ) -> Result<Polyhedron, OffsetError> {
+    offset_before(solid, by, 0.0, tolerance)
+}
+
+/// An offset that is followed by another one by `next` mm: arcs are such that the area they enclose is right when
+/// that is done.
+fn offset_before(
+    solid: &Polyhedron,
+    by: f64,
+    next: f64,
+    tolerance: Tolerance,
+) -> Result<Polyhedron, OffsetError> {
     if !by.is_finite() {
         return Err(OffsetError::NotFinite(by));
     }
     if by == 0.0 || solid.is_empty() {
         return Ok(solid.clone());
     }
+    // What is made of pieces is exact and has few triangles; what is too much for that is contoured.
     // Errors of chords and joints may add up: then once more, finer.
     let mut finer = tolerance;
-    for _ in 1..TRIES {
-        match offset_once(solid, by, finer, tolerance) {
+    for _ in 0..TRIES {
+        match offset_once(solid, by, next, [finer, tolerance]) {
             Err(OffsetError::Inexact { .. }) => finer = finer.half(),
+            Err(OffsetError::Crowded { .. } | OffsetError::Boolean(_)) => break,
             done => return done,
         }
     }
-    offset_once(solid, by, finer, tolerance)
+    apart(solid, by, tolerance)
 }
 
 /// How often an offset is made, each time with half of the tolerance.
@@ -135,10 +156,13 @@ const TRIES: usize = 3;
 fn offset_once(
     solid: &Polyhedron,
     by: f64,
-    made: Tolerance,
-    allowed: Tolerance,
+    next: f64,
+    [made, allowed]: [Tolerance; 2],
 ) -> Result<Polyhedron, OffsetError> {
-    let whole = measure(by, made);
+    // Chords over angles 2 a touch the arc of the last radius r with its area at r (1 - a^2 / 6), and meet at the
+    // radius of this step after a^2 / 2 more.
+    let bulge = 1.5 - 0.5 * ((by + next) / by).clamp(0.0, 1.0);
+    let whole = Measure { bulge, ..measure(by, made) };
     let attempt = |measure: Measure| {
         let grown = uncrossed(raw_surface(solid, by, measure, made)?)?;
         proved(solid, grown, by, allowed)
@@ -170,13 +194,16 @@ fn extended(solid: &Polyhedron, by: f64, tolerance: Tolerance) -> Result<Polyhed
         return Ok(solid.clone());
     }
     let measure = Measure { round: false, ..measure(by, tolerance) };
-    uncrossed(raw_surface(solid, by, measure, tolerance)?)
+    match raw_surface(solid, by, measure, tolerance).and_then(uncrossed) {
+        Err(OffsetError::Crowded { .. } | OffsetError::Boolean(_)) => offset(solid, by, tolerance),
+        done => done,
+    }
 }
 
 fn measure(by: f64, tolerance: Tolerance) -> Measure {
     let (radius, allowed) = (by.abs(), tolerance.mm());
     let (chord, joint) = (CHORDS * allowed / radius, JOINTS * allowed / radius);
-    Measure { radius, round: true, curved: false, crowd: surface::CROWD, chord, joint }
+    Measure { radius, round: true, curved: false, bulge: 1.0, crowd: surface::CROWD, chord, joint }
 }
 
 /// The surface at a distance from a solid, which may cross itself.

@@ -14,10 +14,6 @@ use crate::geom::{Origin, PolyMesh, Surface, triangulate::triangulate_face};
 /// Points of a face that are farther than this from its plane, relative to the coordinates, are not of it.
 const FLAT: f64 = 1e-12;
 
-/// A strip is of a cylinder if its points miss the radius by no more than this part of it, some digits
-/// more than rounding takes.
-const ROUND: f64 = 1e-9;
-
 /// Open points that are worked with: their pieces may all overlap, which takes time that grows with the square
 /// of their number.
 pub(super) const CROWD: usize = 300;
@@ -338,9 +334,9 @@ impl<'a> Builder<'a> {
                 let off = self.out.points[**i as usize] - a;
                 axis.cross(off).length()
             };
-            chain
-                .iter()
-                .all(|i| (square(&i) - self.measure.radius).abs() <= ROUND * self.measure.radius)
+            chain.iter().all(|i| {
+                (square(&i) - self.measure.radius).abs() <= self.measure.chord * self.measure.radius
+            })
         });
         let [l, r] = faces.map(|f| self.mesh.face(f as usize).origin_index());
         let own = faces.map(|f| self.mesh.face(f as usize).origin().surface);

@@ -5,6 +5,7 @@
 mod colors;
 mod constants;
 mod curves;
+mod fields;
 mod files;
 mod lists;
 mod mathematics;
@@ -50,6 +51,7 @@ pub fn find(name: &str) -> Option<Native> {
         constants::TABLE,
         curves::TABLE,
         lists::TABLE,
+        fields::TABLE,
         files::TABLE,
         mathematics::TABLE,
         measures::TABLE,

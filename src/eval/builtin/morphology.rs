@@ -6,30 +6,66 @@ use super::{Args, Native};
 use crate::{
     base::Code,
     eval::{
-        evaluator::Evaluator, failure::Outcome, interpret::algebra::SetOperation, value::Value,
+        dimension::Dimension,
+        evaluator::Evaluator,
+        failure::Outcome,
+        interpret::algebra::SetOperation,
+        types::shown,
+        value::{Record, Symbol, Value},
     },
     geom::overlay::REACH,
-    shape::{Kind, Node, ShapeId},
+    shape::{Kind, Node, ShapeId, SphereTest},
 };
 
 pub const TABLE: &[(&str, Native)] = &[
     ("distance.offset", |e, a| {
         let by = a.number(1)?;
-        offset(e, a, DVec3::splat(by))
+        let test = sphere_test(e, a, 2)?;
+        offset(e, a, DVec3::splat(by), test)
     }),
     ("distance.offset.ellipsoid", ellipsoid),
     ("distance.fillet", fillet),
     ("distance.shell", shell),
 ];
 
-fn offset(evaluator: &mut Evaluator, args: &Args, radii: DVec3) -> Outcome<Value> {
+fn offset(evaluator: &mut Evaluator, args: &Args, radii: DVec3, by: SphereTest) -> Outcome<Value> {
     let child = args.shape(0)?;
     reachable(args, 1, radii.abs().max_element())?;
     if radii == DVec3::ZERO || is_empty(evaluator, child) {
         return Ok(Value::Solid(child));
     }
-    Ok(Value::Solid(evaluator.add_node(Node::Offset { child, radii }, args.call)))
+    Ok(Value::Solid(evaluator.add_node(Node::Offset { child, radii, by }, args.call)))
 }
+
+/// `by`: a constant, or the record that `monte_carlo` gives.
+fn sphere_test(evaluator: &mut Evaluator, args: &Args, i: usize) -> Outcome<SphereTest> {
+    let number = |record: &Record, name: &str| match record.get(name) {
+        Some(Value::Number(x, Dimension::BARE)) if *x >= 0.0 && x.fract() == 0.0 => Some(*x),
+        _ => None,
+    };
+    match args.value(i) {
+        Value::Symbol(Symbol::Exact) => return Ok(SphereTest::Exact),
+        Value::Symbol(Symbol::Quadtree) => return Ok(SphereTest::Quadtree),
+        Value::Record(record) => {
+            if let (Some(n), Some(seed)) = (number(record, "n"), number(record, "seed")) {
+                if n == 0.0 || n > MOST_POINTS {
+                    let words =
+                        format!("`n` is a number of points from 1 to {MOST_POINTS}, got {n}");
+                    return args.fail(i, Code::OutOfRange, words);
+                }
+                evaluator.tick(n as u64, args.call)?;
+                return Ok(SphereTest::MonteCarlo { n: n as u32, seed: seed as u64 });
+            }
+        }
+        _ => {}
+    }
+    let words =
+        format!("`by` is EXACT, QUADTREE or monte_carlo(n, seed), got {}", shown(args.value(i)));
+    args.fail(i, Code::WrongKind, words)
+}
+
+/// Points that a sphere may be tested by.
+const MOST_POINTS: f64 = 1e6;
 
 fn ellipsoid(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
     let radii = args.point(1)?;
@@ -41,7 +77,7 @@ fn ellipsoid(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
         );
         return args.fail(1, Code::Degenerate, words);
     }
-    offset(evaluator, args, radii)
+    offset(evaluator, args, radii, SphereTest::Exact)
 }
 
 fn fillet(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
@@ -63,7 +99,7 @@ fn shell(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
         return Ok(evaluator.shape_value(child));
     }
     let core = match evaluator.graph().kind(child) {
-        Kind::Solid => Node::Offset { child, radii: DVec3::splat(-t) },
+        Kind::Solid => Node::Offset { child, radii: DVec3::splat(-t), by: SphereTest::Exact },
         Kind::Profile => Node::OffsetProfile { profile: child, d: -t },
     };
     let core = evaluator.add_node(core, args.call);

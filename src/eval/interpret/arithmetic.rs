@@ -9,6 +9,7 @@ use super::super::{
     unit::{CodeId, Unit},
     value::{Value, meter},
 };
+use super::traced::is_traced;
 use crate::{
     base::{Code, Diagnostic, Span},
     syntax::ast::BinaryOp,
@@ -69,6 +70,7 @@ impl Evaluator<'_> {
     ) -> Outcome<Value> {
         use BinaryOp::*;
         match (op, &left, &right) {
+            (_, a, b) if is_traced(a, b) => self.traced_binary(op, a, b, at),
             (Equal, a, b) => self.equal(a, b, at).map(Value::Bool),
             (NotEqual, a, b) => self.equal(a, b, at).map(|equal| Value::Bool(!equal)),
             (Less | LessEqual | Greater | GreaterEqual, a, b) => self.order(op, a, b, at),
@@ -233,6 +235,7 @@ impl Evaluator<'_> {
     pub(in crate::eval) fn negate(&mut self, value: Value, at: Span) -> Outcome<Value> {
         match value {
             Value::Number(number, dimension) => Ok(Value::Number(-number, dimension)),
+            Value::Traced(traced) => self.traced_negate(traced, at),
             list @ (Value::List(_) | Value::Range(_)) => {
                 let items = self.items(&list, at)?;
                 self.room(items.len(), at)?;

@@ -297,6 +297,12 @@ impl Evaluator<'_> {
         let params = &code.params;
         let args = Args { values, spans, params, call, caller };
         args.within_reach()?;
+        if self.tracing > 0
+            && let Some(name) = &code.name
+            && let Some(found) = self.traced_function(name, &args)
+        {
+            return found;
+        }
         native(self, &args)
     }
 

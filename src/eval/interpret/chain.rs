@@ -15,8 +15,8 @@ use crate::syntax::ast::BinaryOp;
 impl Evaluator<'_> {
     pub(super) fn eval_chain(&mut self, frame: &Frame, chain: &ChainCode) -> Outcome<Value> {
         match chain.links.first() {
-            Some((BinaryOp::And, _)) => self.truth_chain(frame, chain, false),
-            Some((BinaryOp::Or, _)) => self.truth_chain(frame, chain, true),
+            Some((BinaryOp::And, _)) => self.truth_of_all(frame, chain.operands(), false),
+            Some((BinaryOp::Or, _)) => self.truth_of_all(frame, chain.operands(), true),
             _ => self.fold_chain(frame, chain),
         }
     }
@@ -33,16 +33,6 @@ impl Evaluator<'_> {
             left = whole;
         }
         Ok(total)
-    }
-
-    /// `and` and `or`: what comes behind the first operand that is `decisive` is not evaluated.
-    fn truth_chain(&mut self, frame: &Frame, chain: &ChainCode, decisive: bool) -> Outcome<Value> {
-        for operand in chain.operands() {
-            if self.truth(frame, operand)? == decisive {
-                return Ok(Value::Bool(decisive));
-            }
-        }
-        Ok(Value::Bool(!decisive))
     }
 }
 

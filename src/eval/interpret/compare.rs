@@ -43,6 +43,8 @@ pub fn equal(a: &Value, b: &Value, steps: &mut u64) -> Result<bool, Incomparable
         (Value::Picture(a), Value::Picture(b)) => Ok(a == b),
         (Value::Page(a), Value::Page(b)) => Ok(a == b),
         (Value::Module(a), Value::Module(b)) => Ok(a == b),
+        (Value::Field(a), Value::Field(b)) => Ok(a == b),
+        (Value::Traced(a), Value::Traced(b)) => Ok(a == b),
         (Value::Function(a), Value::Function(b)) => Ok(Arc::ptr_eq(a, b)),
         (Value::Record(a), Value::Record(b)) => {
             if a.fields().len() != b.fields().len() {

@@ -10,7 +10,7 @@ use super::{
         nearest::did_you_mean,
         types::{Type, collect_shapes, shown},
         unit::{ArgumentCode, CodeId, GlobalKind, ParamCode, Unit},
-        value::{Function, Range, Value},
+        value::{Function, Range, Traced, Value},
     },
     Call, Frame,
 };
@@ -515,6 +515,9 @@ pub fn type_of(default: &Value) -> Type {
         Value::Profile(_) => Type::Profile,
         Value::Curve(_) => Type::Curve,
         Value::Surface(_) => Type::Surface,
+        Value::Field(_) => Type::Field,
+        Value::Traced(Traced { dimension: Some(dimension), .. }) => Type::Number(*dimension),
+        Value::Traced(_) => Type::Bool,
         Value::Drawing(_) => Type::Drawing,
         Value::Picture(_) => Type::Picture,
         Value::Page(_) => Type::Page,

@@ -11,6 +11,7 @@ pub mod compare;
 mod control;
 mod global;
 mod sequence;
+mod traced;
 
 use std::sync::Arc;
 
@@ -67,17 +68,16 @@ impl Evaluator<'_> {
             Code::Chain(chain) => self.eval_chain(frame, chain),
             Code::Call(call) => self.eval_call(frame, id, call),
             Code::Method(call) => self.eval_method(frame, id, call),
-            Code::If { condition, then, otherwise } => match self.truth(frame, *condition)? {
-                true => self.eval(frame, *then),
-                false => otherwise.map_or(Err(Failure::TOLD), |other| self.eval(frame, other)),
-            },
+            Code::If { condition, then, otherwise } => {
+                self.eval_if(frame, [*condition, *then], *otherwise)
+            }
             Code::Block(steps, value) => {
                 self.run_steps(frame, steps)?;
                 self.eval(frame, *value)
             }
-            Code::And(a, b) => Ok(Value::Bool(self.truth(frame, *a)? && self.truth(frame, *b)?)),
-            Code::Or(a, b) => Ok(Value::Bool(self.truth(frame, *a)? || self.truth(frame, *b)?)),
-            Code::Not(operand) => Ok(Value::Bool(!self.truth(frame, *operand)?)),
+            Code::And(a, b) => self.truth_of_all(frame, [*a, *b].into_iter(), false),
+            Code::Or(a, b) => self.truth_of_all(frame, [*a, *b].into_iter(), true),
+            Code::Not(operand) => self.eval_not(frame, *operand),
             Code::Negate(operand) => {
                 let value = self.eval(frame, *operand)?;
                 self.negate(value, unit.span(*operand))

@@ -6,6 +6,7 @@ mod print;
 pub mod range;
 pub mod store;
 mod symbol;
+mod traced;
 
 use std::sync::Arc;
 
@@ -14,6 +15,7 @@ pub use print::number_text;
 pub use range::Range;
 pub use store::{List, Record, Surface, Text};
 pub use symbol::Symbol;
+pub use traced::Traced;
 
 use super::{dimension::Dimension, instance::InstanceId};
 use crate::shape::{CurveSpec, PageSpec, ShadeSpec, ShapeId, ViewSpec};
@@ -45,6 +47,10 @@ pub enum Value {
     Curve(Arc<CurveSpec>),
     /// A surface given by points in rows.
     Surface(Arc<Surface>),
+    /// The distance from a solid, everywhere.
+    Field(ShapeId),
+    /// A number or truth value that depends on the point of a field.
+    Traced(Traced),
     /// A view of shapes.
     Drawing(Arc<ViewSpec>),
     /// A picture of shapes in the light.
@@ -101,6 +107,8 @@ impl Value {
             Value::Profile(_) => "a profile".into(),
             Value::Curve(_) => "a curve".into(),
             Value::Surface(_) => "a surface".into(),
+            Value::Field(_) => "a field".into(),
+            Value::Traced(traced) => traced.words(),
             Value::Drawing(_) => "a drawing".into(),
             Value::Picture(_) => "a picture".into(),
             Value::Page(_) => "a page".into(),

@@ -88,6 +88,8 @@ impl Printer<'_, '_> {
             Value::Profile(_) => self.f.write_str("<profile>"),
             Value::Curve(_) => self.f.write_str("<curve>"),
             Value::Surface(_) => self.f.write_str("<surface>"),
+            Value::Field(_) => self.f.write_str("<field>"),
+            Value::Traced(_) => self.f.write_str("<formula>"),
             Value::Drawing(_) => self.f.write_str("<drawing>"),
             Value::Picture(_) => self.f.write_str("<picture>"),
             Value::Page(_) => self.f.write_str("<page>"),

@@ -47,6 +47,16 @@ symbols! {
     Sphere = "SPHERE",
     /// The exact kernel.
     Exact = "EXACT",
+    /// The spherical quadtree.
+    Quadtree = "QUADTREE",
+    /// A potential of 1 / d.
+    Inverse = "INVERSE",
+    /// A potential of 1 / d^2.
+    InverseSquare = "INVERSE_SQUARE",
+    /// Wyvill's potential, 0 beyond a radius.
+    Wyvill = "WYVILL",
+    /// Blinn's potential, exp(-(d / r)^2).
+    Blinn = "BLINN",
     /// Isometric: from (1, -1, 1).
     Iso = "ISO",
     /// From (1, -sqrt 7, 1).

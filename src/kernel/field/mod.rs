@@ -18,15 +18,21 @@
 //!
 //! # Departures
 //! The paper grows by a bound and asks the hypersphere where it does not decide. Here distances that feed an
-//! offset are true ones.
+//! offset are true ones; [`Hypersphere`] is there to be asked for, and covers a hole of the paper's test.
 
 mod algebra;
+mod apart;
 mod block;
+pub mod contour;
+mod hypersphere;
 mod lathe;
 mod local;
+mod metaball;
 mod outline;
+mod pieces;
 mod polyhedral;
 mod round;
+pub mod smooth;
 mod tree;
 mod triangle;
 
@@ -34,12 +40,16 @@ use glam::DVec3;
 
 pub use self::{
     algebra::{Complement, Grown, Intersection, NotExact, Union},
+    apart::Apart,
     block::Cuboid,
+    hypersphere::{Hypersphere, Test},
     lathe::Lathe,
     local::Local,
+    metaball::Metaball,
     outline::Prism,
     polyhedral::{Nearest, Polyhedral},
     round::{Ball, Ring},
+    smooth::Zeros,
     triangle::Feature,
 };
 use crate::geom::Bounds;

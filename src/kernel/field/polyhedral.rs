@@ -16,6 +16,7 @@ use rustc_hash::FxHashMap;
 
 use super::{
     Field, Local,
+    pieces::Pieces,
     tree::Tree,
     triangle::{Feature, Part, Triangle},
 };
@@ -32,6 +33,8 @@ pub struct Nearest {
     pub distance: f64,
     /// What it lies on, by numbers of the mesh.
     pub feature: Feature,
+    /// A face of the mesh that it lies on.
+    pub face: u32,
     /// The direction that tells the sides apart there; not of unit length, zero where it says nothing.
     pub normal: DVec3,
 }
@@ -129,7 +132,23 @@ impl Polyhedral {
             true => !self.surrounds(p),
             false => (p - point).dot(normal) >= 0.0,
         };
-        Nearest { point, distance: if outside { apart } else { -apart }, feature, normal }
+        Nearest {
+            point,
+            distance: if outside { apart } else { -apart },
+            feature,
+            face: facet.face,
+            normal,
+        }
+    }
+
+    /// A point of every piece of the boundary, in the order of the triangles.
+    pub(super) fn pieces(&self) -> Vec<DVec3> {
+        let mut pieces = Pieces::new(self.points.len());
+        self.facets.iter().for_each(|f| pieces.join(f.corners));
+        let mut roots: Vec<u32> = self.facets.iter().map(|f| pieces.of(f.corners[0])).collect();
+        roots.sort_unstable();
+        roots.dedup();
+        roots.into_iter().map(|i| self.points[i as usize]).collect()
     }
 
     /// Whether the boundary surrounds a point, by its solid angle.

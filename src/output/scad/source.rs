@@ -205,6 +205,8 @@ impl Writer<'_> {
             }
             Node::Offset { .. } => self.mesh(shape, "offset")?,
             Node::Fillet { .. } => self.mesh(shape, "fillet")?,
+            Node::Metaball { .. } => self.mesh(shape, "metaball")?,
+            Node::Formula { .. } => self.mesh(shape, "field")?,
             Node::ImportSolid { .. } => self.mesh(shape, "import")?,
             Node::Thickened { .. } | Node::Filled { .. } => self.mesh(shape, "surface")?,
             Node::Text(_) => points::region(&self.region(shape, "text")?),

@@ -95,7 +95,7 @@ fn unknown_names() {
         "view v = box(1, 2, 3).view(from = 1)",
         &["a view is from a side or a direction", "@1@"],
     );
-    refuses("a = metaball([1])", &["unknown name `metaball`"]);
+    refuses("a = metabal([1])", &["unknown name `metabal`", "metaball"]);
     refuses("a = builtin(\"math.sin\")", &["unknown name `builtin`"]);
     refuses("fn f(x: Lenght) = x", &["there is no type `Lenght`", "did you mean `Length`?"]);
     refuses("set kernel = TET", &["unknown-name: there is no kernel `TET` @TET@", "`EXACT`"]);
