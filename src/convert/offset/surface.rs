@@ -14,6 +14,10 @@ use crate::geom::{Origin, PolyMesh, Surface, triangulate::triangulate_face};
 /// Points of a face that are farther than this from its plane, relative to the coordinates, are not of it.
 const FLAT: f64 = 1e-12;
 
+/// A flat face stands across a cylinder if the sine of the angle between its normal and the axis is below this, some
+/// digits more than rounding takes.
+const ACROSS: f64 = 1e-9;
+
 /// Open points that are worked with: their pieces may all overlap, which takes time that grows with the square
 /// of their number.
 pub(super) const CROWD: usize = 300;
@@ -361,7 +365,7 @@ impl<'a> Builder<'a> {
         let wall = self.mesh.face(curved as usize);
         let Surface::Cylinder { point, axis, .. } = wall.origin().surface else { return None };
         let lean = self.rings.normals[plane as usize].cross(axis).length();
-        if !flat(plane) || lean > ROUND {
+        if !flat(plane) || lean > ACROSS {
             return None;
         }
         let center = point + axis * (on - point).dot(axis);
