@@ -61,15 +61,22 @@ pub(super) fn swollen(
         };
         triangles.iter().map(cone).sum::<f64>()
     };
-    let held = volume(points);
-    let mut moved = points.to_vec();
-    moved[inner.clone()].iter_mut().for_each(|p| *p *= 1.0 + most);
-    let gained = volume(&moved) - held;
-    if gained > 0.0 && wanted > held {
-        let factor = 1.0 + most * ((wanted - held) / gained).min(1.0);
-        points[inner].iter_mut().for_each(|p| *p *= factor);
+    // The volume grows nearly evenly with the way.
+    let (held, mut way) = (volume(points), most);
+    for _ in 0..STEPS {
+        let mut moved = points.to_vec();
+        moved[inner.clone()].iter_mut().for_each(|p| *p *= 1.0 + way);
+        let gained = volume(&moved) - held;
+        if gained <= 0.0 || wanted <= held {
+            return;
+        }
+        way = (way * (wanted - held) / gained).min(most);
     }
+    points[inner].iter_mut().for_each(|p| *p *= 1.0 + way);
 }
+
+/// Steps towards the way that makes a volume right.
+const STEPS: usize = 3;
 
 /// The angle between two vectors.
 pub(super) trait Angle {

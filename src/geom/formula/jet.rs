@@ -193,6 +193,10 @@ fn rest(op: Binary, a: &Jet, b: &Jet) -> Jet {
 /// a^b.
 fn power(a: &Jet, b: &Jet) -> Jet {
     let (x, n) = (a.value, b.value);
+    if !n.is_point() && x.low < 0.0 {
+        // Negative numbers have whole powers only.
+        return Jet { value: Interval::ALL, slope: [Interval::ALL; 3] };
+    }
     if !n.is_point() {
         let logarithm = unary(Unary::Ln, a);
         return unary(Unary::Exp, &binary(Binary::Multiply, b, &logarithm));

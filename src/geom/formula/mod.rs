@@ -337,7 +337,10 @@ fn unary(op: Unary, x: f64) -> f64 {
 
 /// A function of two numbers.
 fn binary(op: Binary, a: f64, b: f64) -> f64 {
-    let truth = |t: bool| if a.is_nan() || b.is_nan() { f64::NAN } else { f64::from(u8::from(t)) };
+    if a.is_nan() || b.is_nan() {
+        return f64::NAN;
+    }
+    let truth = |t: bool| f64::from(u8::from(t));
     match op {
         Binary::Add => a + b,
         Binary::Subtract => a - b,
@@ -349,9 +352,7 @@ fn binary(op: Binary, a: f64, b: f64) -> f64 {
             if rest != 0.0 && (rest < 0.0) != (b < 0.0) { rest + b } else { rest }
         }
         Binary::Power => power(a, b),
-        Binary::Min if a.is_nan() || b.is_nan() => f64::NAN,
         Binary::Min => a.min(b),
-        Binary::Max if a.is_nan() || b.is_nan() => f64::NAN,
         Binary::Max => a.max(b),
         Binary::Atan2 => trig::atan2_deg(a, b),
         Binary::Less => truth(a < b),
