@@ -95,7 +95,7 @@ pub fn metaball(
 ) -> Result<Polyhedron, LevelSetError> {
     let ball = Metaball::new(charges.to_vec(), threshold);
     let Some(within) = ball.extent() else { return Ok(Polyhedron::empty()) };
-    level_set(Zeros::new(ball), &within, tolerance, &[Origin::of(Surface::Facets)], |_| 0)
+    level_set(Zeros::new(ball), &within, tolerance, &[Origin::of(Surface::Smooth)], |_| 0)
 }
 
 /// The solid where a formula is at most 0, sought in a box. Fails where it is above 0 in all of the box, where

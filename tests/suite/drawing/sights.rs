@@ -43,7 +43,7 @@ const OVERDRAWN: f64 = 0.005;
 /// and are drawn each.
 const WRONG: [(&str, &str); 1] = [("rounded_bracket.kata", "near")];
 /// Examples whose contours run over facets, or double where a wall that is seen edge-on is off by rounding.
-const OVERLAPPING: [&str; 3] = ["bottle_cap.kata", "pebble.kata", "soap_box.kata"];
+const OVERLAPPING: [&str; 4] = ["bottle_cap.kata", "gyroid.kata", "pebble.kata", "soap_box.kata"];
 
 /// Where the examples are looked at from.
 #[derive(Clone, Copy, Debug)]
