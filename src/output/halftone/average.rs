@@ -33,21 +33,22 @@ impl Average {
         &self.frame
     }
 
-    /// The mean tone of a square with so long a side about a place on paper; white outside the picture's frame.
+    /// The mean tone of a square with so long a side about a place on paper, as far as it is in the picture's frame;
+    /// white outside.
     pub fn at(&self, center: DVec2, side: f64) -> f64 {
         self.over(center, DVec2::splat(side))
     }
 
-    /// The mean tone of a rectangle about a place on paper; white outside the picture's frame.
+    /// The mean tone of a rectangle about a place on paper, as far as it is in the picture's frame; white outside.
     pub fn over(&self, center: DVec2, size: DVec2) -> f64 {
         let [width, height] = self.frame.size.map(f64::from);
         let (middle, half) = (self.frame.column_row(center), size / self.frame.pitch() / 2.0);
         let clamp = |p: DVec2| p.clamp(DVec2::ZERO, DVec2::new(width, height));
         let (low, high) = (clamp(middle - half), clamp(middle + half));
-        let inside = self.sum(high.x, high.y) - self.sum(low.x, high.y) - self.sum(high.x, low.y)
+        let sum = self.sum(high.x, high.y) - self.sum(low.x, high.y) - self.sum(high.x, low.y)
             + self.sum(low.x, low.y);
-        let (area, all) = ((high - low).element_product(), 4.0 * half.element_product());
-        if all > 0.0 { ((inside + (all - area)) / all).clamp(0.0, 1.0) } else { 1.0 }
+        let area = (high - low).element_product();
+        if area > 0.0 { (sum / area).clamp(0.0, 1.0) } else { 1.0 }
     }
 
     /// The sum of the tones above and to the left of a place in columns and rows, linear within pixels.
