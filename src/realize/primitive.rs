@@ -122,19 +122,7 @@ pub fn make(realizer: &Realizer, graph: &ShapeGraph, unit: Stretched) -> Made<Po
             let solid = revolve(&region, *angle, *sides, tolerance).at(origin)?;
             Ok(painted(solid, &figure.paint))
         }
-        Node::Hull(list) => {
-            let mut points: Vec<DVec3> = vec![];
-            for &child in list.iter() {
-                let made = realizer.solid_made(graph, child, unit.stretch)?;
-                points.extend(&made.polyhedron.mesh().points);
-                if points.len() > MOST_HULL_POINTS {
-                    let words = format!("a hull of more than {MOST_HULL_POINTS} points");
-                    let error = Diagnostic::error(Code::Limit, words).label(origin, "");
-                    return Err(failure(error.help("give a larger tolerance or fewer shapes")));
-                }
-            }
-            hull(&points).at(origin)
-        }
+        Node::Hull(list) => hull_of(realizer, graph, unit, list),
         Node::Thickened { surface, t } => sheet::thickened(surface, *t).at(origin),
         Node::Filled { surface, base } => sheet::filled(surface, *base).at(origin),
         Node::Offset { child, radii, by } => {
@@ -164,6 +152,27 @@ pub fn make(realizer: &Realizer, graph: &ShapeGraph, unit: Stretched) -> Made<Po
             Ok(Polyhedron::empty())
         }
     }
+}
+
+/// The hull of some shapes.
+fn hull_of(
+    realizer: &Realizer,
+    graph: &ShapeGraph,
+    unit: Stretched,
+    list: &[ShapeId],
+) -> Made<Polyhedron> {
+    let origin = graph.origin(unit.id);
+    let mut points: Vec<DVec3> = vec![];
+    for &child in list {
+        let made = realizer.solid_made(graph, child, unit.stretch)?;
+        points.extend(&made.polyhedron.mesh().points);
+        if points.len() > MOST_HULL_POINTS {
+            let words = format!("a hull of more than {MOST_HULL_POINTS} points");
+            let error = Diagnostic::error(Code::Limit, words).label(origin, "");
+            return Err(failure(error.help("give a larger tolerance or fewer shapes")));
+        }
+    }
+    hull(&points).at(origin)
 }
 
 fn squared(a: u32, b: u32) -> usize {

@@ -20,6 +20,8 @@ use katachi::{
     session::Session,
 };
 
+use crate::random::Random;
+
 fn tolerance(mm: f64) -> Tolerance {
     Tolerance::new(mm).expect("positive")
 }
@@ -56,10 +58,11 @@ fn bracket() -> Polyhedron {
 }
 
 /// Grows a solid, and checks that the result is closed, does not cross itself and is where it should be.
-fn grown(solid: &Polyhedron, by: f64, allowed: f64) -> Polyhedron {
+pub fn grown(solid: &Polyhedron, by: f64, allowed: f64) -> Polyhedron {
     let found = offset(solid, by, tolerance(allowed)).expect("an offset");
     assert_eq!(crossings(found.mesh()).len(), 0, "by {by}");
     assert!(Polyhedron::new(found.mesh().clone()).is_ok());
+    assert!(by < 0.0 || !found.is_empty(), "what grows by {by} is not empty");
     let field = Polyhedral::new(solid.mesh()).expect("full");
     if let Some(off) = deviation(found.mesh(), &field, by) {
         assert!(off.most <= allowed, "by {by}: off by {} at {}", off.most, off.at);
@@ -236,16 +239,7 @@ fn fillets_that_others_refuse() {
     }
 }
 
-/// Numbers in [0, 1), the same in every run.
-struct Random(u64);
-
 impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 =
-            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
     fn solid(&mut self) -> Polyhedron {
         let parts = (0..2 + (self.next() * 2.0) as usize).map(|_| self.part()).collect();
         if self.next() < 0.5 { union(parts) } else { difference(parts) }

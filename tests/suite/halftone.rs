@@ -6,9 +6,15 @@ use katachi::{
     kernel::brep::primitive::{cuboid, sphere},
     output::{
         drawing::{Camera, Scene, View, Window},
-        halftone::{Frame, Light, Picture, Screen, Sun, ground_shadow, lit_parts, picture, png},
+        halftone::{
+            Frame, Light, Picture, Screen, Sun, ground_shadow, levels, lit_parts, overstrike,
+            picture, png,
+        },
+        sheet::Lettering,
     },
 };
+
+use crate::random::Random;
 
 fn frame(half: f64, pixels: f64) -> Frame {
     let window = Window { min: DVec2::splat(-half), max: DVec2::splat(half) };
@@ -108,15 +114,7 @@ fn the_same_bytes_on_any_number_of_threads() {
     assert!(made(1) == made(2));
 }
 
-struct Random(u64);
-
 impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 =
-            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
     fn vector(&mut self) -> DVec3 {
         dvec3(self.next(), self.next(), self.next())
     }
@@ -269,5 +267,37 @@ fn screens_keep_the_mean_tone() {
             let mean = tones.iter().sum::<f64>() / tones.len() as f64;
             assert!((mean - tone).abs() < 0.01, "{screen:?}: {mean} for {tone}");
         }
+    }
+}
+
+/// Signs that are upright bars, the wider the later in the alphabet they stand, each in a place of its own.
+struct Bars;
+
+impl Lettering for Bars {
+    fn outlines(&self, text: &str, height: f64) -> Option<(Vec<Vec<DVec2>>, f64)> {
+        let code = f64::from(u32::from(text.chars().next()?) % 37);
+        let [from, to] = [0.02 * code, 0.02 * code + 0.005 + 0.01 * code].map(|x| x * height / 2.0);
+        let corners = [(from, 0.0), (to, 0.0), (to, height), (from, height)];
+        Some((vec![corners.map(|(x, y)| dvec2(x, y)).to_vec()], height * 0.6))
+    }
+}
+
+/// Twenty tones come out of struck signs as twenty different amounts of ink, each more than the one before.
+#[test]
+fn levels_of_struck_signs_grow_in_ink() {
+    let levels = levels(&Bars, 20);
+    assert_eq!((levels.len(), levels[0].ink), (20, 0.0));
+    let most = levels[19].ink;
+    let frame = frame(20.32, 320.0);
+    let mut before = -1.0;
+    for (number, level) in levels.iter().enumerate() {
+        let part = number as f64 / 19.0;
+        assert!((level.ink / most - part).abs() < 0.03, "{number}: {level:?} of {most}");
+        let pixels = vec![[1.0 - part as f32; 3]; (frame.size[0] * frame.size[1]) as usize];
+        let struck = overstrike(&Picture { frame, pixels }, &Bars, 20);
+        let made = struck.ink.picture().tones();
+        let ink = 1.0 - made.iter().map(|t| f64::from(*t)).sum::<f64>() / made.len() as f64;
+        assert!(ink > before, "{number}: {ink} after {before}");
+        before = ink;
     }
 }

@@ -5,10 +5,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use katachi::{
     base::{Shelf, watch::Unwatched},
-    convert::{
-        contour::metaball,
-        offset::{deviation, offset, tested},
-    },
+    convert::{contour::metaball, offset::tested},
     geom::{Charge, Falloff, Tolerance},
     kernel::{
         brep::{
@@ -17,11 +14,13 @@ use katachi::{
             measure,
             primitive::{cuboid, torus},
         },
-        field::{Metaball, Polyhedral, Test, smooth::Smooth},
+        field::{Metaball, Test, smooth::Smooth},
     },
     session::Session,
     shape::Measures,
 };
+
+use crate::{fields::grown, random::Random};
 
 fn tolerance(mm: f64) -> Tolerance {
     Tolerance::new(mm).expect("positive")
@@ -97,38 +96,17 @@ fn sharp_edges_of_formulas_stay_sharp() {
     assert!(found.triangles < 200, "{}", found.triangles);
 }
 
-/// Shrinks or grows, and checks that the result is closed, does not cross itself and is where it should be.
-fn moved(solid: &Polyhedron, by: f64, allowed: f64) -> Polyhedron {
-    let found = offset(solid, by, tolerance(allowed)).expect("an offset");
-    assert_eq!(crossings(found.mesh()).len(), 0, "by {by}");
-    assert!(Polyhedron::new(found.mesh().clone()).is_ok());
-    let field = Polyhedral::new(solid.mesh()).expect("full");
-    if let Some(off) = deviation(found.mesh(), &field, by) {
-        assert!(off.most <= allowed, "by {by}: off by {} at {}", off.most, off.at);
-    }
-    found
-}
-
 #[test]
 fn what_folds_at_many_places_is_contoured() {
-    let ring = moved(&torus(10.0, 4.0, 48, 32), 7.0, 0.03);
+    let ring = grown(&torus(10.0, 4.0, 48, 32), 7.0, 0.03);
     assert_eq!(measure::genus(&ring), 0);
     let cube = cuboid(DVec3::ZERO, DVec3::splat(10.0));
-    let back = moved(&moved(&cube, 1.0, 0.01), -2.0, 0.03);
+    let back = grown(&grown(&cube, 1.0, 0.01), -2.0, 0.03);
     // Chords of the first offset lie inside, so the second one rounds edges by a trifle.
     assert!((measure::volume(&back) - 512.0).abs() < 2.0, "{}", measure::volume(&back));
 }
 
-/// Numbers in [0, 1), the same in every run.
-struct Random(u64);
-
 impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 =
-            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
     fn point(&mut self, reach: f64) -> DVec3 {
         (DVec3::new(self.next(), self.next(), self.next()) * 2.0 - 1.0) * reach
     }
@@ -205,7 +183,7 @@ fn the_same_bytes_come_from_one_and_two_threads() {
     let ring = torus(10.0, 4.0, 24, 16);
     let of = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-        pool.install(|| moved(&ring, 7.0, 0.1))
+        pool.install(|| grown(&ring, 7.0, 0.1))
     };
     assert_eq!(of(1).mesh(), of(2).mesh());
 }

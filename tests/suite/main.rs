@@ -16,6 +16,7 @@ mod laws;
 mod level_sets;
 mod made;
 mod openscad;
+mod random;
 mod readers;
 mod readme;
 mod regressions;

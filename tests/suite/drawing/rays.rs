@@ -13,35 +13,27 @@ use katachi::{
 };
 
 use super::scenes::{drawn, near, union};
-
-/// Numbers in [0, 1) by a linear congruence.
-struct Random(u64);
+use crate::random::Random;
 
 impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 =
-            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn vector(&mut self, half: f64) -> DVec3 {
+    fn within(&mut self, half: f64) -> DVec3 {
         (DVec3::from_array(std::array::from_fn(|_| self.next())) - 0.5) * 2.0 * half
     }
 
     /// A box of sides up to 20 mm, turned anyhow, within 40 mm of the origin.
     fn cuboid(&mut self) -> Polyhedron {
-        let half = self.vector(1.0).abs() * 9.0 + 1.0;
-        let [x, y, z] = (self.vector(3.0)).to_array();
+        let half = self.within(1.0).abs() * 9.0 + 1.0;
+        let [x, y, z] = (self.within(3.0)).to_array();
         let turn = DMat3::from_quat(DQuat::from_euler(EulerRot::XYZ, x, y, z));
-        cuboid(-half, half).placed(&Placement::new(turn, self.vector(25.0)))
+        cuboid(-half, half).placed(&Placement::new(turn, self.within(25.0)))
     }
 
     fn camera(&mut self) -> Camera {
-        let direction = self.vector(1.0).normalize() * 120.0;
+        let direction = self.within(1.0).normalize() * 120.0;
         if self.next() < 0.5 {
             Camera::parallel(direction).expect("a direction")
         } else {
-            Camera::perspective(direction, self.vector(10.0)).expect("apart")
+            Camera::perspective(direction, self.within(10.0)).expect("apart")
         }
     }
 }
@@ -208,7 +200,7 @@ fn outlines_of_balls_part_what_is_seen() {
         let mut random = Random(2000 + scene);
         let mut balls: Vec<(DVec3, f64)> = vec![];
         for _ in 0..12 {
-            let (center, radius) = (random.vector(30.0), 2.0 + 8.0 * random.next());
+            let (center, radius) = (random.within(30.0), 2.0 + 8.0 * random.next());
             if balls.iter().all(|&(c, r)| c.distance(center) > radius + r) {
                 balls.push((center, radius));
             }
