@@ -101,44 +101,51 @@ fn unique(faces: impl Iterator<Item = u32>) -> Vec<u32> {
 /// The pairs of faces among the first `count`, at least one of them suspected, whose boxes meet and that are
 /// not [kept apart](Hull::is_apart) for certain; a suspected face that may cross itself is a pair for itself.
 fn unproved(mesh: &PolyMesh, count: usize, suspects: &[u32]) -> Vec<[u32; 2]> {
-    let hull = |face: u32| Hull::of(mesh, mesh.face(face as usize));
-    let bounds = |face: u32| {
-        let corners = mesh.face(face as usize).loops().flatten();
-        Bounds::of(corners.map(|&c| mesh.points[c as usize]))
-    };
-    let is_apart = |f: &Option<Hull<'_>>, g: &Option<Hull<'_>>| {
-        f.as_ref().zip(g.as_ref()).is_some_and(|(f, g)| f.is_apart(g))
-    };
-    let hulls = spread(suspects, |&f| Some(hull(f)));
-    let boxes: Vec<Bounds> = suspects.iter().map(|&f| bounds(f)).collect();
+    let hulls = spread(suspects, |&face| [hull(mesh, face)]);
+    let boxes: Vec<Bounds> = suspects.iter().map(|&face| bounds(mesh, face)).collect();
     let hierarchy = Bvh::new(&boxes);
-    // The place of each suspect.
-    let mut places = vec![u32::MAX; count];
-    (0u32..).zip(suspects).for_each(|(place, &face)| places[face as usize] = place);
-    let faces: Vec<u32> = (0..count as u32).collect();
-    spread(&faces, |&face| {
-        let place = places[face as usize];
-        let mut own = None;
-        let mut open = vec![];
-        let (bounds, is_suspect) = match boxes.get(place as usize) {
-            Some(known) => (*known, true),
-            None => (bounds(face), false),
-        };
-        hierarchy.visit(&bounds, |i| {
-            let other = &hulls[i as usize];
-            let is_sound = match is_suspect {
-                true if i < place => true,
-                true if i == place => other.as_ref().is_some_and(Hull::is_simple),
-                true => is_apart(&hulls[place as usize], other),
-                false => is_apart(own.get_or_insert_with(|| hull(face)), other),
-            };
-            if !is_sound {
-                let other = suspects[i as usize];
-                open.push([face.min(other), face.max(other)]);
+    let mut near = vec![];
+    hierarchy.self_pairs(|i, j| near.push([i, j]));
+    let mut open = spread(&near, |pair| {
+        let [f, g] = pair.map(|i| &hulls[i as usize]);
+        (!are_kept_apart(f, g)).then(|| pair.map(|i| suspects[i as usize]))
+    });
+    let may_cross_itself = |hull: &Option<Hull<'_>>| !hull.as_ref().is_some_and(Hull::is_simple);
+    let themselves = suspects.iter().zip(&hulls).filter(|(_, hull)| may_cross_itself(hull));
+    open.extend(themselves.map(|(&face, _)| [face; 2]));
+    open.extend(spread(&rest(count, suspects), |&face| {
+        let (mut own, mut open) = (None, vec![]);
+        hierarchy.visit(&bounds(mesh, face), |i| {
+            let own = own.get_or_insert_with(|| hull(mesh, face));
+            if !are_kept_apart(own, &hulls[i as usize]) {
+                open.push([face, suspects[i as usize]]);
             }
         });
         open
-    })
+    }));
+    open.iter_mut().for_each(|pair| pair.sort_unstable());
+    open.sort_unstable();
+    open
+}
+
+fn hull(mesh: &PolyMesh, face: u32) -> Option<Hull<'_>> {
+    Hull::of(mesh, mesh.face(face as usize))
+}
+
+fn bounds(mesh: &PolyMesh, face: u32) -> Bounds {
+    let corners = mesh.face(face as usize).loops().flatten();
+    Bounds::of(corners.map(|&c| mesh.points[c as usize]))
+}
+
+fn are_kept_apart(f: &Option<Hull<'_>>, g: &Option<Hull<'_>>) -> bool {
+    f.as_ref().zip(g.as_ref()).is_some_and(|(f, g)| f.is_apart(g))
+}
+
+/// Those of the first `count` faces that are not in a list.
+fn rest(count: usize, list: &[u32]) -> Vec<u32> {
+    let mut is_listed = vec![false; count];
+    list.iter().for_each(|&face| is_listed[face as usize] = true);
+    (0..count as u32).filter(|&face| !is_listed[face as usize]).collect()
 }
 
 /// So many pairs of triangles of two faces are looked at one by one.

@@ -17,5 +17,6 @@ pub mod revolve;
 mod ridge;
 mod separation;
 pub mod sheet;
+mod threads;
 
 pub use polyhedron::{Defect, Polyhedron};

@@ -13,7 +13,10 @@ use glam::{DVec2, DVec3};
 use crate::geom::{FaceRef, PolyMesh, orient::orient2d};
 
 /// Faces with more corners are not looked at: their hulls say little.
-const MANY: usize = 12;
+const MANY: usize = 1000;
+
+/// With more corners the middle of a face is as good as the middle direction to its corners.
+const SOME: usize = 12;
 
 /// With more corners it is not looked for how near they come to each other.
 const FEW: usize = 8;
@@ -63,8 +66,12 @@ pub(super) struct Hull<'a> {
     points: &'a [DVec3],
     /// A direction of length 1 across it, nearly.
     normal: DVec3,
+    /// No corner is lower or higher along the normal than this from the first one.
+    heights: (f64, f64),
     /// No two corners are farther apart along the normal.
     flatness: f64,
+    /// The middle of the corners.
+    middle: DVec3,
     /// No two corners are farther apart.
     reach: f64,
     /// No corner is nearer to a segment between two others; 0 if that is not known.
@@ -84,14 +91,24 @@ impl<'a> Hull<'a> {
         let area = (1..corners.len() - 1).map(|i| at(i).cross(at(i + 1))).sum::<DVec3>();
         let normal = area.try_normalize()?;
         let slope = Slope::across(normal);
-        let (mut flatness, mut reach) = (0.0f64, 0.0f64);
+        let (mut low, mut high, mut reach, mut sum) = (0.0f64, 0.0f64, 0.0f64, DVec3::ZERO);
         for i in 1..corners.len() {
             let (height, error) = slope.height(at(i));
-            flatness = flatness.max(2.0 * (height.abs() + error));
+            (low, high) = (low.min(height - error), high.max(height + error));
             reach = reach.max(2.0 * at(i).length());
+            sum += at(i);
         }
-        let mut hull =
-            Hull { corners, points, normal, flatness, reach, clearance: 0.0, is_simple: false };
+        let mut hull = Hull {
+            corners,
+            points,
+            normal,
+            heights: (low, high),
+            flatness: 2.0 * high.max(-low),
+            middle: points[corners[0] as usize] + sum / corners.len() as f64,
+            reach,
+            clearance: 0.0,
+            is_simple: false,
+        };
         hull.is_simple = hull.is_seen_whole();
         if hull.is_simple && corners.len() <= FEW {
             hull.clearance = hull.least_distance();
@@ -131,14 +148,13 @@ impl<'a> Hull<'a> {
         let count = self.corners.len();
         let size = self.normal.abs();
         let axis = if size.z >= size.x.max(size.y) { 2 } else { usize::from(size.y > size.x) };
-        let mut flat = [DVec2::ZERO; MANY];
-        for (slot, &corner) in flat.iter_mut().zip(self.corners) {
+        let flat = |corner: u32| {
             let p = self.at(corner);
-            *slot = DVec2::new(p[(axis + 1) % 3], p[(axis + 2) % 3]);
-        }
+            DVec2::new(p[(axis + 1) % 3], p[(axis + 2) % 3])
+        };
         let sign = self.normal[axis].signum();
         (0..if count == 3 { 1 } else { count }).any(|from| {
-            let at = |k: usize| flat[(from + k) % count];
+            let at = |k: usize| flat(self.corners[(from + k) % count]);
             let turns = |i: usize, j: usize| orient2d(at(0), at(i), at(j)) * sign > 0.0;
             (2..count).all(|k| turns(k - 1, k) && turns(1, k))
         })
@@ -156,7 +172,10 @@ impl<'a> Hull<'a> {
             count += 1;
         }
         match shared[..count] {
-            [] => self.is_beyond(other, self.normal) || self.is_beyond(other, other.normal),
+            [] if self.corners.len() < other.corners.len() => {
+                self.is_above_or_below(other) || other.is_above_or_below(self)
+            }
+            [] => other.is_above_or_below(self) || self.is_above_or_below(other),
             [a] => self.carry_each_other(other, &[a]) || self.part_at(other, a),
             [a, b] => self.carry_each_other(other, &[a, b]) || self.part_along(other, (a, b)),
             _ => false,
@@ -202,21 +221,20 @@ impl<'a> Hull<'a> {
         self.corners.iter().zip(next).any(|(&c, &d)| (c, d) == (a, b) || (d, c) == (a, b))
     }
 
-    /// Whether all of the other face is farther along a direction, or all of it is less far.
-    fn is_beyond(&self, other: &Hull<'_>, along: DVec3) -> bool {
-        let (slope, base) = (Slope::across(along), self.at(self.corners[0]));
-        let range = |hull: &Hull<'_>| {
-            hull.corners.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |range, &corner| {
-                let (height, error) = slope.height(self.at(corner) - base);
-                (range.0.min(height - error), range.1.max(height + error))
-            })
-        };
-        let (own, others) = (range(self), range(other));
-        own.1 < others.0 || others.1 < own.0
+    /// Whether all corners are higher, or all are lower, than those of another face along its normal.
+    fn is_above_or_below(&self, other: &Hull<'_>) -> bool {
+        let (slope, base) = (Slope::across(other.normal), self.at(other.corners[0]));
+        let heights = |corner: &u32| slope.height(self.at(*corner) - base);
+        let (low, high) = other.heights;
+        self.corners.iter().map(heights).all(|(height, error)| height - error > high)
+            || self.corners.iter().map(heights).all(|(height, error)| height + error < low)
     }
 
     /// The middle direction from a corner to the others.
     fn inward(&self, from: DVec3) -> DVec3 {
+        if self.corners.len() > SOME {
+            return self.middle - from;
+        }
         self.corners.iter().map(|&c| (self.at(c) - from).normalize_or_zero()).sum()
     }
 

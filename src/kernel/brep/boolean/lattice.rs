@@ -101,7 +101,8 @@ impl Lattice {
 /// integer, it is found faster.
 fn rounded(count: f64) -> f64 {
     let cut = count as i64 as f64;
-    if (count - cut).abs() >= 0.5 { cut + count.signum() } else { cut }
+    let beyond = f64::from(u8::from((count - cut).abs() >= 0.5));
+    cut + beyond.copysign(count)
 }
 
 /// Doubles far from the origin are themselves a lattice of 2^-53 times their size; a finer lattice

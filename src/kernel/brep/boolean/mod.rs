@@ -101,7 +101,7 @@ use self::{
     seed::Surroundings,
     space::Space,
 };
-use super::{polyhedron::Polyhedron, resolution::lost};
+use super::{polyhedron::Polyhedron, resolution::lost, threads};
 use crate::geom::{Placement, PolyMesh};
 
 /// A construction tree of solids.
@@ -118,6 +118,29 @@ pub enum Tree {
     /// What is in every part; of no parts, nothing.
     Intersection(Vec<Tree>),
 }
+
+impl Tree {
+    /// Whether there are at least so many leaves.
+    fn has_leaves(&self, count: usize) -> bool {
+        let (mut found, mut rest) = (0, vec![self]);
+        while let Some(tree) = rest.pop() {
+            match tree {
+                Tree::Leaf(_) => found += 1,
+                Tree::Placed(_, child) => rest.push(child),
+                Tree::Union(list) | Tree::Difference(list) | Tree::Intersection(list) => {
+                    rest.extend(list);
+                }
+            }
+            if found >= count {
+                return true;
+            }
+        }
+        false
+    }
+}
+
+/// So many leaves take longer than a pool of threads to start.
+const MANY: usize = 24;
 
 /// The result of a set operation.
 #[derive(Clone, Debug)]
@@ -176,8 +199,12 @@ pub const CORNERS: usize = 1 << 28;
 /// # Ok::<(), katachi::kernel::brep::boolean::BooleanError>(())
 /// ```
 pub fn evaluate(tree: &Tree) -> Result<Evaluated, BooleanError> {
-    // Work is handed over faster among the threads of the pool than from outside.
-    rayon::scope(|_| evaluate_at(tree, &Placement::IDENTITY))
+    let work = || evaluate_at(tree, &Placement::IDENTITY);
+    match tree.has_leaves(MANY) {
+        true => threads::crew(work),
+        // Work is handed over faster among the threads of a pool than from outside.
+        false => rayon::scope(|_| work()),
+    }
 }
 
 /// Evaluates a tree whose result stands at `outer`.

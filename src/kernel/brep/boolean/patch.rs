@@ -9,6 +9,8 @@
 //! shell (`seed` starts there), those whose plane number a face that takes part also has (so that
 //! coplanar faces still merge), and those at points that are one point of the lattice.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
@@ -79,29 +81,25 @@ impl Borders {
 impl Patches {
     /// Snaps all leaves; finds their patches if `resting`.
     pub fn of(leaves: &[Leaf], lattice: &Lattice, resting: bool) -> Patches {
-        let snap = |leaf: &Leaf| {
-            let points = leaf.solid.mesh().points.par_iter().with_min_len(CHUNK);
-            points.map(|&p| lattice.snap(leaf.local.point(p))).collect::<Vec<[i32; 3]>>()
-        };
-        let points: Vec<Vec<[i32; 3]>> = leaves.par_iter().map(snap).collect();
+        let points =
+            in_pieces(leaves.iter().map(|leaf| leaf.solid.mesh().points.len()), |(leaf, range)| {
+                let leaf = &leaves[leaf];
+                let points = leaf.solid.mesh().points[range].iter();
+                points.map(|&p| lattice.snap(leaf.local.point(p))).collect::<Vec<[i32; 3]>>()
+            });
         let mut patches = Patches { leaves: vec![], list: vec![] };
         let is_large = |leaf: &Leaf| leaf.solid.mesh().face_count() >= LARGE;
-        let found: Vec<Found> = if resting && leaves.iter().any(is_large) {
+        let found: Vec<Option<Found>> = if resting && leaves.iter().any(is_large) {
             resting_faces(leaves, &points)
         } else {
             leaves.iter().map(|_| None).collect()
         };
-        let group = |((leaf, points), found): ((&Leaf, Vec<[i32; 3]>), Found)| match found {
-            Some(found) => found.grouped(leaf.solid.mesh(), points),
-            None => (Snapped { points, resting: vec![], patches: vec![] }, vec![]),
-        };
-        let leaves: Vec<_> = leaves.par_iter().zip(points).zip(found).map(group).collect();
-        for (number, (mut snapped, mut list)) in (0u32..).zip(leaves) {
+        for (number, (points, found)) in (0u32..).zip(points.into_iter().zip(found)) {
+            let Found { resting, patches: mut numbers, list } = found.unwrap_or_default();
             let before = patches.list.len() as u32;
-            snapped.patches.iter_mut().filter(|p| **p != NONE).for_each(|patch| *patch += before);
-            list.iter_mut().for_each(|patch| patch.leaf = number);
-            patches.leaves.push(snapped);
-            patches.list.extend(list);
+            numbers.iter_mut().filter(|p| **p != NONE).for_each(|patch| *patch += before);
+            patches.leaves.push(Snapped { points, resting, patches: numbers });
+            patches.list.extend(list.into_iter().map(|patch| Patch { leaf: number, ..patch }));
         }
         patches
     }
@@ -135,8 +133,26 @@ impl Patches {
     }
 }
 
-/// Points that one thread looks at together.
+/// Points or faces that one thread looks at together.
 const CHUNK: usize = 4096;
+
+/// What is found for the items of each list, given how many there are, by looking at pieces of the lists.
+fn in_pieces<R: Send + Clone>(
+    counts: impl Iterator<Item = usize>,
+    find: impl Fn((usize, Range<usize>)) -> Vec<R> + Sync,
+) -> Vec<Vec<R>> {
+    let (mut pieces, mut found) = (vec![], vec![]);
+    for (list, count) in counts.enumerate() {
+        let starts = (0..count).step_by(CHUNK);
+        pieces.extend(starts.map(|start| (list, start..count.min(start + CHUNK))));
+        found.push(Vec::with_capacity(count));
+    }
+    let made: Vec<Vec<R>> = pieces.par_iter().cloned().map(&find).collect();
+    for ((list, _), mut made) in pieces.iter().zip(made) {
+        found[*list].append(&mut made);
+    }
+    found
+}
 
 /// Puts the points of a face into one set.
 fn join_corners(face: FaceRef<'_>, sets: &mut Sets) {
@@ -156,23 +172,32 @@ fn bounds(face: FaceRef<'_>, points: &[[i32; 3]]) -> Bounds {
 }
 
 /// What is found about the faces of a large leaf.
-struct Large {
+struct Large<'a> {
     /// Whether each may rest.
     resting: Vec<bool>,
     /// Their boxes.
-    boxes: Vec<Bounds>,
+    boxes: &'a [Bounds],
     /// The points that resting faces hold together, and perhaps some that were found to be needed.
     sets: Sets,
 }
 
-type Found = Option<Large>;
+/// What rests of a large leaf.
+#[derive(Default)]
+struct Found {
+    /// For each face whether it is in a patch.
+    resting: Vec<bool>,
+    /// The number of the patch of each point, or [`NONE`].
+    patches: Vec<u32>,
+    /// The patches, whose leaf is not given yet.
+    list: Vec<Patch>,
+}
 
-impl Large {
-    /// Groups the resting faces into patches, whose leaf is not given yet.
-    fn grouped(mut self, mesh: &PolyMesh, points: Vec<[i32; 3]>) -> (Snapped, Vec<Patch>) {
+impl Large<'_> {
+    /// Groups the resting faces into patches.
+    fn grouped(mut self, mesh: &PolyMesh) -> Found {
         let mut list: Vec<Patch> = vec![];
-        let mut numbers = vec![NONE; points.len()];
-        let mut patches = vec![NONE; points.len()];
+        let mut numbers = vec![NONE; mesh.points.len()];
+        let mut patches = vec![NONE; mesh.points.len()];
         for face in mesh.faces().filter(|f| self.resting[f.index()]) {
             let number = &mut numbers[self.sets.find(face.outer()[0]) as usize];
             if *number == NONE {
@@ -184,17 +209,17 @@ impl Large {
             patch.bounds = patch.bounds.with(self.boxes[face.index()]);
             face.loops().flatten().for_each(|&corner| patches[corner as usize] = *number);
         }
-        (Snapped { points, resting: self.resting, patches }, list)
+        Found { resting: self.resting, patches, list }
     }
 }
 
 /// Which faces of each leaf may rest.
-fn resting_faces(leaves: &[Leaf], points: &[Vec<[i32; 3]>]) -> Vec<Found> {
-    let boxes = |(leaf, points): (&Leaf, &Vec<[i32; 3]>)| {
-        let faces = (0..leaf.solid.mesh().face_count()).into_par_iter().with_min_len(CHUNK);
-        faces.map(|f| bounds(leaf.solid.mesh().face(f), points)).collect::<Vec<Bounds>>()
-    };
-    let boxes: Vec<Vec<Bounds>> = leaves.par_iter().zip(points).map(boxes).collect();
+fn resting_faces(leaves: &[Leaf], points: &[Vec<[i32; 3]>]) -> Vec<Option<Found>> {
+    let counts = leaves.iter().map(|leaf| leaf.solid.mesh().face_count());
+    let boxes = in_pieces(counts, |(leaf, faces)| {
+        let mesh = leaves[leaf].solid.mesh();
+        faces.map(|f| bounds(mesh.face(f), &points[leaf])).collect::<Vec<Bounds>>()
+    });
     let around: Vec<Bounds> = points
         .iter()
         .map(|p| p.iter().fold(Bounds::EMPTY, |all, &p| all.with(Bounds { min: p, max: p })))
@@ -203,38 +228,45 @@ fn resting_faces(leaves: &[Leaf], points: &[Vec<[i32; 3]>]) -> Vec<Found> {
     Hierarchy::new(around.iter().copied()).own_pairs(|a, b| met.push((a, b)));
     let is_large = |leaf: u32| boxes[leaf as usize].len() >= LARGE;
     met.retain(|&(a, b)| is_large(a) || is_large(b));
-    let near: Vec<Vec<(Bounds, u32)>> =
-        (0..leaves.len()).into_par_iter().map(|leaf| near(leaf, &boxes, &around, &met)).collect();
-    let tree = |near: &Vec<(Bounds, u32)>| Hierarchy::new(near.iter().map(|n| n.0));
-    let trees: Vec<Hierarchy> = near.par_iter().map(tree).collect();
-    let touched = met.par_iter().map(|&(a, b)| {
+    let numbers: Vec<usize> = (0..leaves.len()).collect();
+    let near: Vec<(Vec<(Bounds, u32)>, Hierarchy)> = numbers
+        .par_iter()
+        .map(|&leaf| {
+            let near = near(leaf, &boxes, &around, &met);
+            let tree = Hierarchy::new(near.iter().map(|n| n.0));
+            (near, tree)
+        })
+        .collect();
+    let touched = |&(a, b): &(u32, u32)| {
         let mut touched = [vec![], vec![]];
-        trees[a as usize].pairs(&trees[b as usize], |f, g| {
-            touched[0].push(near[a as usize][f as usize].1);
-            touched[1].push(near[b as usize][g as usize].1);
+        let [(near_a, tree_a), (near_b, tree_b)] = [a, b].map(|leaf| &near[leaf as usize]);
+        tree_a.pairs(tree_b, |f, g| {
+            touched[0].push(near_a[f as usize].1);
+            touched[1].push(near_b[g as usize].1);
         });
         touched
-    });
-    let touched: Vec<[Vec<u32>; 2]> = touched.collect();
+    };
+    let touched: Vec<[Vec<u32>; 2]> = met.par_iter().map(touched).collect();
     let mut awake: Vec<Vec<u32>> = vec![vec![]; leaves.len()];
     for (&(a, b), touched) in met.iter().zip(touched) {
         for (leaf, touched) in [a, b].into_iter().zip(touched).filter(|t| is_large(t.0)) {
             awake[leaf as usize].extend(touched);
         }
     }
-    let rest = |((leaf, boxes), awake): ((usize, Vec<Bounds>), Vec<u32>)| {
+    let rest = |&leaf: &usize| {
+        let boxes = &boxes[leaf];
         if boxes.len() < LARGE {
             return None;
         }
         let mut resting = vec![true; boxes.len()];
-        awake.into_iter().for_each(|face| resting[face as usize] = false);
+        awake[leaf].iter().for_each(|&face| resting[face as usize] = false);
         let mesh = leaves[leaf].solid.mesh();
         let mut sets = Sets::new(points[leaf].len());
         mesh.faces().filter(|f| resting[f.index()]).for_each(|f| join_corners(f, &mut sets));
         wake(mesh, &points[leaf], &sets, &mut resting);
-        Some(Large { resting, boxes, sets })
+        Some(Large { resting, boxes, sets }.grouped(mesh))
     };
-    boxes.into_par_iter().enumerate().zip(awake).map(rest).collect()
+    numbers.par_iter().map(rest).collect()
 }
 
 /// The faces of a leaf that others may touch: of a large one those that a grid tells. `met` are the pairs of
