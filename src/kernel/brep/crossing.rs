@@ -1,12 +1,12 @@
 //! Where a closed surface crosses or covers itself.
 
 use glam::{DVec2, DVec3};
-use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::{
     Polyhedron,
     separation::{Hull, Slope},
+    threads,
 };
 use crate::geom::{
     Bounds, PolyMesh,
@@ -159,12 +159,8 @@ fn spread<T: Sync, R: Send, I: IntoIterator<Item = R>>(
     list: &[T],
     find: impl Fn(&T) -> I + Sync,
 ) -> Vec<R> {
-    if list.len() <= CHUNK {
-        return list.iter().flat_map(find).collect();
-    }
-    let chunks = list.par_chunks(CHUNK).map(|chunk| chunk.iter().flat_map(&find).collect());
-    let chunks: Vec<Vec<R>> = chunks.collect();
-    chunks.into_iter().flatten().collect()
+    let all = |part: &[T]| part.iter().flat_map(&find).collect::<Vec<R>>();
+    threads::parts(list, CHUNK, all).into_iter().flatten().collect()
 }
 
 /// The triangles of a mesh, or of some of its faces.

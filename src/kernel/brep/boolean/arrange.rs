@@ -6,9 +6,8 @@
 //! by crossing edges from the unbounded cell inwards. All decisions are exact. Planes in
 //! which no new points arise are arranged at the same time.
 
-use rayon::prelude::*;
-
 use super::{
+    super::threads,
     cells::Complex,
     facet::Facets,
     graph::Graph,
@@ -182,11 +181,7 @@ impl Planes<'_> {
             }
             part
         };
-        if groups.len() <= CHUNK {
-            vec![look(groups)]
-        } else {
-            groups.par_chunks(CHUNK).map(look).collect()
-        }
+        threads::parts(groups, CHUNK, look)
     }
 
     fn gather(&self, group: &Group, arranger: &mut Arranger, space: &Space) {

@@ -4,7 +4,10 @@ use glam::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::{
-    super::crossing::{Tangle, tangle},
+    super::{
+        crossing::{Tangle, tangle},
+        threads,
+    },
     boundary::Boundary,
     carry::Carried,
     cells::Complex,
@@ -75,7 +78,7 @@ impl Assembly<'_> {
         loop {
             let (draft, carried) = self.draft(&strict)?;
             let faces = draft.polygons.len();
-            let ((tangle, flat), solid) = rayon::join(
+            let ((tangle, flat), solid) = threads::both(
                 || match tangle(&draft.mesh, faces, &draft.suspects) {
                     None => (None, self.flat_triangle(&draft)),
                     found => (found, None),

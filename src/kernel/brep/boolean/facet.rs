@@ -5,10 +5,10 @@
 //! its corners are put on the edges it collapsed onto, so that both sides of those are split alike.
 
 use glam::DVec3;
-use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::{
+    super::threads,
     frame::Leaf,
     hierarchy::Bounds,
     lattice::Lattice,
@@ -80,16 +80,15 @@ impl Facets {
         let (mut facets, mut sources) = (Facets::default(), Sources::default());
         let mut dropped = vec![];
         let leaf = |number: usize| (number as u32, &leaves[number], &patches.leaves[number]);
-        let numbers = 0..leaves.len();
-        let points: Vec<Vec<u32>> =
-            numbers.clone().map(|n| sources.add_leaf(leaf(n), lattice, space)).collect();
+        let mut numbered = |number| (number, sources.add_leaf(leaf(number), lattice, space));
+        let numbers: Vec<(usize, Vec<u32>)> = (0..leaves.len()).map(&mut numbered).collect();
         let space = &*space;
-        let parts = numbers.into_par_iter().zip(points).map(|(number, points)| {
+        let parts = threads::each(&numbers, |(number, points)| {
             let (mut facets, mut dropped) = (Facets::default(), vec![]);
-            facets.add_leaf(leaf(number), &points, space, &mut dropped);
+            facets.add_leaf(leaf(*number), points, space, &mut dropped);
             (facets, dropped)
         });
-        for (part, flat) in parts.collect::<Vec<_>>() {
+        for (part, flat) in parts {
             facets.append(part);
             dropped.extend(flat);
         }
@@ -206,10 +205,8 @@ impl Facets {
         };
         let new: Vec<u32> = facets.filter(is_new).collect();
         let find = |&facet: &u32| self.exact_plane(facet, space);
-        let planes: Vec<(Plane, bool)> = match new.len() > FEW {
-            true => new.par_iter().with_min_len(FEW / 2).map(find).collect(),
-            false => new.iter().map(find).collect(),
-        };
+        let find = |part: &[u32]| part.iter().map(find).collect::<Vec<(Plane, bool)>>();
+        let planes = threads::parts(&new, FEW, find).into_iter().flatten();
         for (facet, (plane, turned)) in new.into_iter().zip(planes) {
             self.list[facet as usize].plane = Some((space.add_plane(plane), turned));
         }
@@ -443,7 +440,7 @@ fn strictly_between(space: &Space, a: u32, b: u32, c: u32) -> bool {
 pub(super) fn extent(leaves: &[Leaf]) -> (DVec3, DVec3) {
     let nothing = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     let with = |a: (DVec3, DVec3), b: (DVec3, DVec3)| (a.0.min(b.0), a.1.max(b.1));
-    let around = |(leaf, points): (&Leaf, &[DVec3])| {
+    let around = |&(leaf, points): &(&Leaf, &[DVec3])| {
         let mut range = nothing;
         for &p in points {
             let placed = leaf.local.point(p);
@@ -458,14 +455,12 @@ pub(super) fn extent(leaves: &[Leaf]) -> (DVec3, DVec3) {
         .iter()
         .flat_map(|leaf| leaf.solid.mesh().points.chunks(CHUNK).map(move |points| (leaf, points)));
     let parts: Vec<_> = parts.collect();
-    let range = match parts.len() {
-        0..MANY => parts.into_iter().map(around).fold(nothing, with),
-        _ => parts.into_par_iter().with_min_len(MANY / 2).map(around).reduce(|| nothing, with),
-    };
+    let around = |parts: &[(&Leaf, &[DVec3])]| parts.iter().map(around).fold(nothing, with);
+    let range = threads::parts(&parts, MANY, around).into_iter().fold(nothing, with);
     if range.0.x > range.1.x { (DVec3::ZERO, DVec3::ZERO) } else { range }
 }
 
-/// Planes of so few facets are found by one thread.
+/// Planes of so many facets are worth handing over.
 const FEW: usize = 128;
 
 /// Points that are looked at together by one thread.

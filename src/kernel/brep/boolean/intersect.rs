@@ -6,9 +6,8 @@
 
 use std::cmp::Ordering;
 
-use rayon::prelude::*;
-
 use super::{
+    super::threads,
     facet::Facets,
     hierarchy::Hierarchy,
     rim::Rim,
@@ -82,20 +81,17 @@ const CHUNK: usize = 128;
 
 /// What pairs of facets do to each other, where they do; nothing is changed by looking.
 fn findings(pairs: &[(u32, u32)], facets: &Facets, space: &Space) -> Vec<(u32, Finding)> {
-    let look = |(number, chunk): (usize, &[(u32, u32)])| {
+    let look = |part: &[(u32, &(u32, u32))]| {
         let (mut scratch, mut found) = (Scratch::default(), vec![]);
-        for (pair, &(f, g)) in (number * CHUNK..).zip(chunk) {
-            if let Some(finding) = finding((f, g), facets, space, &mut scratch) {
-                found.push((pair as u32, finding));
+        for &(number, &pair) in part {
+            if let Some(finding) = finding(pair, facets, space, &mut scratch) {
+                found.push((number, finding));
             }
         }
         found
     };
-    if pairs.len() <= CHUNK {
-        return look((0, pairs));
-    }
-    let chunks: Vec<Vec<(u32, Finding)>> = pairs.par_chunks(CHUNK).enumerate().map(look).collect();
-    chunks.into_iter().flatten().collect()
+    let numbered: Vec<(u32, &(u32, u32))> = (0u32..).zip(pairs).collect();
+    threads::parts(&numbered, CHUNK, look).into_iter().flatten().collect()
 }
 
 /// Pairs of facets whose boxes touch, in a fixed order. Facets of one operand are compared only if
@@ -112,13 +108,14 @@ pub(super) fn candidates(facets: &Facets, trusted: bool) -> Vec<(u32, u32)> {
     owner_pairs.sort_unstable();
     let mut is_met = vec![false; ranges.len()];
     owner_pairs.iter().for_each(|&(a, b)| (is_met[a], is_met[b]) = (true, true));
-    let tree = |(range, is_met): (&std::ops::Range<usize>, &bool)| {
+    let tree = |&(range, is_met): &(&std::ops::Range<usize>, &bool)| {
         let bounds = facets.list()[range.clone()].iter().map(|f| f.bounds);
         is_met.then(|| Hierarchy::new(bounds))
     };
+    let list: Vec<_> = ranges.iter().zip(&is_met).collect();
     let trees: Vec<Option<Hierarchy>> = match facets.list().len() > LARGE {
-        true => ranges.par_iter().zip(&is_met).map(tree).collect(),
-        false => ranges.iter().zip(&is_met).map(tree).collect(),
+        true => threads::each(&list, tree),
+        false => list.iter().map(tree).collect(),
     };
     for (a, b) in owner_pairs {
         let (Some(first), Some(second)) = (&trees[a], &trees[b]) else { continue };

@@ -86,7 +86,6 @@ mod whole;
 use std::sync::Arc;
 
 use glam::DVec3;
-use rayon::prelude::*;
 use thiserror::Error;
 
 use self::{
@@ -120,27 +119,25 @@ pub enum Tree {
 }
 
 impl Tree {
-    /// Whether there are at least so many leaves.
-    fn has_leaves(&self, count: usize) -> bool {
-        let (mut found, mut rest) = (0, vec![self]);
+    /// How many leaves there are, and how many corners of leaves.
+    fn size(&self) -> [usize; 2] {
+        let (mut size, mut rest) = ([0; 2], vec![self]);
         while let Some(tree) = rest.pop() {
             match tree {
-                Tree::Leaf(_) => found += 1,
+                Tree::Leaf(solid) => size = [size[0] + 1, size[1] + solid.mesh().points.len()],
                 Tree::Placed(_, child) => rest.push(child),
                 Tree::Union(list) | Tree::Difference(list) | Tree::Intersection(list) => {
                     rest.extend(list);
                 }
             }
-            if found >= count {
-                return true;
-            }
         }
-        false
+        size
     }
 }
 
-/// So many leaves take longer than a pool of threads to start.
+/// So many leaves take longer than new threads to start, and so many corners longer than a pool to wake.
 const MANY: usize = 24;
+const LARGE: usize = 2000;
 
 /// The result of a set operation.
 #[derive(Clone, Debug)]
@@ -200,10 +197,11 @@ pub const CORNERS: usize = 1 << 28;
 /// ```
 pub fn evaluate(tree: &Tree) -> Result<Evaluated, BooleanError> {
     let work = || evaluate_at(tree, &Placement::IDENTITY);
-    match tree.has_leaves(MANY) {
-        true => threads::crew(work),
-        // Work is handed over faster among the threads of a pool than from outside.
-        false => rayon::scope(|_| work()),
+    let [leaves, corners] = tree.size();
+    match (leaves, corners) {
+        (MANY.., _) => threads::crew(work),
+        (_, LARGE..) => threads::pooled(work),
+        _ => work(),
     }
 }
 
@@ -258,8 +256,8 @@ fn evaluate_operation(tree: &Tree, outer: &Placement) -> Result<Evaluated, Boole
 
 /// Evaluates trees that do not touch, each for itself.
 fn side_by_side(trees: &[Tree], outer: &Placement) -> Result<Evaluated, BooleanError> {
-    let parts = trees.par_iter().map(|tree| frame::deeper(|| evaluate_at(tree, outer)));
-    let parts: Vec<Evaluated> = parts.collect::<Result<_, _>>()?;
+    let parts = threads::each(trees, |tree| frame::deeper(|| evaluate_at(tree, outer)));
+    let parts: Vec<Evaluated> = parts.into_iter().collect::<Result<_, _>>()?;
     let mut all = Evaluated { solid: Polyhedron::empty(), snap: 0.0, step: 0.0, crossing: None };
     let mut mesh = PolyMesh::default();
     for part in &parts {

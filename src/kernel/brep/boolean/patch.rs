@@ -11,10 +11,10 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::{
+    super::threads,
     frame::Leaf,
     grid::Grid,
     hierarchy::{Bounds, Hierarchy},
@@ -82,7 +82,7 @@ impl Patches {
     /// Snaps all leaves; finds their patches if `resting`.
     pub fn of(leaves: &[Leaf], lattice: &Lattice, resting: bool) -> Patches {
         let points =
-            in_pieces(leaves.iter().map(|leaf| leaf.solid.mesh().points.len()), |(leaf, range)| {
+            in_pieces(leaves.iter().map(|leaf| leaf.solid.mesh().points.len()), |leaf, range| {
                 let leaf = &leaves[leaf];
                 let points = leaf.solid.mesh().points[range].iter();
                 points.map(|&p| lattice.snap(leaf.local.point(p))).collect::<Vec<[i32; 3]>>()
@@ -139,7 +139,7 @@ const CHUNK: usize = 4096;
 /// What is found for the items of each list, given how many there are, by looking at pieces of the lists.
 fn in_pieces<R: Send + Clone>(
     counts: impl Iterator<Item = usize>,
-    find: impl Fn((usize, Range<usize>)) -> Vec<R> + Sync,
+    find: impl Fn(usize, Range<usize>) -> Vec<R> + Sync,
 ) -> Vec<Vec<R>> {
     let (mut pieces, mut found) = (vec![], vec![]);
     for (list, count) in counts.enumerate() {
@@ -147,7 +147,7 @@ fn in_pieces<R: Send + Clone>(
         pieces.extend(starts.map(|start| (list, start..count.min(start + CHUNK))));
         found.push(Vec::with_capacity(count));
     }
-    let made: Vec<Vec<R>> = pieces.par_iter().cloned().map(&find).collect();
+    let made = threads::each(&pieces, |(list, range)| find(*list, range.clone()));
     for ((list, _), mut made) in pieces.iter().zip(made) {
         found[*list].append(&mut made);
     }
@@ -216,7 +216,7 @@ impl Large<'_> {
 /// Which faces of each leaf may rest.
 fn resting_faces(leaves: &[Leaf], points: &[Vec<[i32; 3]>]) -> Vec<Option<Found>> {
     let counts = leaves.iter().map(|leaf| leaf.solid.mesh().face_count());
-    let boxes = in_pieces(counts, |(leaf, faces)| {
+    let boxes = in_pieces(counts, |leaf, faces| {
         let mesh = leaves[leaf].solid.mesh();
         faces.map(|f| bounds(mesh.face(f), &points[leaf])).collect::<Vec<Bounds>>()
     });
@@ -229,14 +229,11 @@ fn resting_faces(leaves: &[Leaf], points: &[Vec<[i32; 3]>]) -> Vec<Option<Found>
     let is_large = |leaf: u32| boxes[leaf as usize].len() >= LARGE;
     met.retain(|&(a, b)| is_large(a) || is_large(b));
     let numbers: Vec<usize> = (0..leaves.len()).collect();
-    let near: Vec<(Vec<(Bounds, u32)>, Hierarchy)> = numbers
-        .par_iter()
-        .map(|&leaf| {
-            let near = near(leaf, &boxes, &around, &met);
-            let tree = Hierarchy::new(near.iter().map(|n| n.0));
-            (near, tree)
-        })
-        .collect();
+    let near: Vec<(Vec<(Bounds, u32)>, Hierarchy)> = threads::each(&numbers, |&leaf| {
+        let near = near(leaf, &boxes, &around, &met);
+        let tree = Hierarchy::new(near.iter().map(|n| n.0));
+        (near, tree)
+    });
     let touched = |&(a, b): &(u32, u32)| {
         let mut touched = [vec![], vec![]];
         let [(near_a, tree_a), (near_b, tree_b)] = [a, b].map(|leaf| &near[leaf as usize]);
@@ -246,7 +243,7 @@ fn resting_faces(leaves: &[Leaf], points: &[Vec<[i32; 3]>]) -> Vec<Option<Found>
         });
         touched
     };
-    let touched: Vec<[Vec<u32>; 2]> = met.par_iter().map(touched).collect();
+    let touched: Vec<[Vec<u32>; 2]> = threads::each(&met, touched);
     let mut awake: Vec<Vec<u32>> = vec![vec![]; leaves.len()];
     for (&(a, b), touched) in met.iter().zip(touched) {
         for (leaf, touched) in [a, b].into_iter().zip(touched).filter(|t| is_large(t.0)) {
@@ -266,7 +263,7 @@ fn resting_faces(leaves: &[Leaf], points: &[Vec<[i32; 3]>]) -> Vec<Option<Found>
         wake(mesh, &points[leaf], &sets, &mut resting);
         Some(Large { resting, boxes, sets }.grouped(mesh))
     };
-    numbers.par_iter().map(rest).collect()
+    threads::each(&numbers, rest)
 }
 
 /// The faces of a leaf that others may touch: of a large one those that a grid tells. `met` are the pairs of

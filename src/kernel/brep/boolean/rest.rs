@@ -4,9 +4,8 @@
 //! together at points and border on facets that do take part are a patch: what holds at the border
 //! holds for the patch. Those that border on nothing are a shell of their own.
 
-use rayon::prelude::*;
-
 use super::{
+    super::threads,
     facet::Facets,
     grid::Grid,
     hierarchy::{Bounds, Hierarchy},
@@ -122,7 +121,7 @@ fn touching(operands: &[Facets]) -> Vec<[(u32, u32); 2]> {
         }
         let tree = |near: &[(Bounds, u32)]| Hierarchy::new(near.iter().map(|n| n.0));
         let (tree_a, tree_b) = match is_large {
-            true => rayon::join(|| tree(&near_a), || tree(&near_b)),
+            true => threads::both(|| tree(&near_a), || tree(&near_b)),
             false => (tree(&near_a), tree(&near_b)),
         };
         let mut found = vec![];
@@ -134,7 +133,7 @@ fn touching(operands: &[Facets]) -> Vec<[(u32, u32); 2]> {
     if !is_large {
         return owners.iter().flat_map(touching).collect();
     }
-    owners.par_iter().map(touching).collect::<Vec<_>>().concat()
+    threads::each(&owners, touching).concat()
 }
 
 /// So many facets of all operands are worth a second thread.

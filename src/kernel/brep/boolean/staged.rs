@@ -1,6 +1,7 @@
 //! The evaluation of a crowded operation in stages.
 
 use super::{
+    super::threads,
     assemble::Assembly,
     cells::Complex,
     classify::{Links, Sides},
@@ -18,7 +19,6 @@ use super::{
 };
 use crate::kernel::brep::Polyhedron;
 use glam::DVec3;
-use rayon::prelude::*;
 
 /// Evaluates an operation in stages ([`Assembly::solid`]); `None` where one stage is as good, or where stages fail.
 pub(super) fn evaluate(
@@ -93,7 +93,7 @@ impl Stages<'_> {
             let mut fork = Fork::of(space);
             self.operand(*operand, &mut fork.space).map(|found| (fork, found))
         };
-        let parts: Vec<(Fork, Facets)> = heavy.par_iter().map(apart).collect::<Option<_>>()?;
+        let parts = threads::each(&heavy, apart).into_iter().collect::<Option<Vec<_>>>()?;
         let mut parts = parts.into_iter();
         let mut next = |operand: &Operand| {
             if !self.is_heavy(*operand) {
