@@ -155,6 +155,13 @@ pub struct View {
     /// Hidden lines: off, dashed or depth:K
     #[arg(long, value_name = "HOW", default_value = "off")]
     pub hidden: String,
+    /// Print the model, or its half-tone, as characters
+    #[arg(long, conflicts_with = "output")]
+    pub text: bool,
+    /// How many in a row [default: those of the terminal]
+    #[arg(long, value_name = "N", requires = "text")]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub columns: Option<u32>,
     /// The .svg, .pdf or .dxf [default: out/MODEL.svg]
     #[arg(short, value_name = "FILE")]
     pub output: Option<PathBuf>,
