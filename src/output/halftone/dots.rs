@@ -87,6 +87,10 @@ fn outline(shape: DotShape, part: f64) -> Option<Vec<DVec2>> {
 fn radius(part: f64, stretch: f64) -> f64 {
     // Seen so that ellipses are circles.
     let cell = dvec2(1.0 / stretch, 1.0);
+    let apart = (part * cell.element_product() / PI).sqrt();
+    if apart <= cell.x / 2.0 {
+        return apart;
+    }
     let (mut low, mut high) = (0.0, cell.length() / 2.0);
     for _ in 0..60 {
         let middle = (low + high) / 2.0;
