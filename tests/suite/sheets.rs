@@ -238,3 +238,58 @@ view under = [cube, over].view(from = TOP, hidden = DASHED, light = sun([0, 0, 1
     }
     assert!(!svg("under").contains("class=\"shadow\""), "hidden shadows are not drawn");
 }
+
+#[test]
+fn figures_on_faces_are_lines_over_tones() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let model = "
+die = box(10, 10, 10).draw_on(TOP, circle(3)).draw_on(BOTTOM, circle(2))
+shade lit = die.shade(from = TOP, shadow = NONE, light = sun([0, 0, 1]))
+export \"lit.svg\" = lit
+export \"lit.png\" = lit
+";
+    fs::write(folder.path().join("m.kata"), model).expect("writable");
+    let output = run(folder.path(), &["build", "m.kata"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let svg = fs::read_to_string(folder.path().join("out/lit.svg")).expect("written");
+    let pattern = svg.split("class=\"pattern\"").nth(1).expect("a layer");
+    // One circle of two or three arcs, and not the one below.
+    assert!(pattern.contains("A3 3 ") && !pattern.contains("A2 2 "), "{pattern}");
+    assert!(!svg.contains("class=\"visible\""));
+    // The same in pixels: all white but for the circle.
+    let file = fs::File::open(folder.path().join("out/lit.png")).expect("written");
+    let mut reader =
+        png::Decoder::new(std::io::BufReader::new(file)).read_info().expect("a picture");
+    let mut samples = vec![0; reader.output_buffer_size().expect("small")];
+    reader.next_frame(&mut samples).expect("pixels");
+    assert!(samples.iter().any(|&s| s < 50) && samples[samples.len() / 2] > 200);
+}
+
+#[test]
+fn pictures_are_printed_in_characters() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let part = "part ball = sphere(10)\n";
+    let shade = "shade top = box(10, 20, 5).shade(from = TOP, light = sun([0, 1, 1]))\n";
+    fs::write(folder.path().join("part.kata"), part).expect("writable");
+    fs::write(folder.path().join("shade.kata"), format!("{part}{shade}")).expect("writable");
+    fs::write(folder.path().join("none.kata"), "x = 1\n").expect("writable");
+    let printed = |arguments: &[&str]| {
+        let output = run(folder.path(), arguments);
+        (output.status.success(), String::from_utf8_lossy(&output.stdout).into_owned())
+    };
+    let (ok, ball) = printed(&["view", "part.kata", "--text", "--columns", "40"]);
+    let widths = || ball.lines().map(|line| line.chars().count());
+    assert!(ok && widths().max() > Some(34) && widths().max() <= Some(40), "{ball}");
+    // As high as wide: characters are twice as high.
+    assert!((19..=20).contains(&ball.lines().count()), "{ball}");
+    let mut signs: Vec<char> = ball.chars().filter(|c| *c != '\n').collect();
+    signs.sort_unstable();
+    signs.dedup();
+    assert!((15..=20).contains(&signs.len()), "{signs:?}");
+    let (ok, shade) = printed(&["view", "shade.kata", "--text", "--columns", "30"]);
+    // A half-tone comes before parts: a box seen from above, twice as long as wide.
+    assert!(ok && shade.lines().count() > 24, "{shade}");
+    assert!(!printed(&["view", "none.kata", "--text"]).0);
+    assert!(!printed(&["view", "part.kata", "--text", "-o", "x.svg"]).0);
+    assert!(!printed(&["view", "part.kata", "--columns", "40"]).0);
+}

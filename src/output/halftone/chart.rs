@@ -112,6 +112,20 @@ impl<'a> Chart<'a> {
         Chart { shape: Shape::Grid(grid), size, first: 90.0 }
     }
 
+    /// How much longer than along the parameters the way is on the surface at most. Grids may be longer on the way from a
+    /// corner of a cell to the opposite one.
+    pub fn most_stretch(&self) -> f64 {
+        let Shape::Grid(grid) = &self.shape else { return 1.0 };
+        let [cu, cv] = grid.cells();
+        let cell = self.size / dvec2(cu as f64, cv as f64);
+        let cells = (0..cu).flat_map(|i| (0..cv).map(move |j| (i, j)));
+        cells.fold(1.0, |most: f64, (i, j)| {
+            let from = grid.point(i, j);
+            let ways = [grid.point(i + 1, j), grid.point(i, j + 1)].map(|p| p.distance(from));
+            most.max(ways[0] / cell.x).max(ways[1] / cell.y)
+        })
+    }
+
     /// The point at parameters from 0 to the size.
     pub fn point(&self, at: DVec2) -> DVec3 {
         match &self.shape {

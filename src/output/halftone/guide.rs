@@ -1,6 +1,6 @@
 //! What each pixel of a picture shows, and the parameter lines of what it shows.
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, dvec2};
 
 use super::{
     chart::Chart,
@@ -22,8 +22,8 @@ pub struct Guide<'a> {
     seen: Vec<u32>,
     facets: Vec<Place>,
     charts: Vec<Chart<'a>>,
-    /// For each chart whether something of it is seen.
-    is_seen: Vec<bool>,
+    /// For each chart how much larger than the surface its image is at most where it is seen; 0 where it is not.
+    magnified: Vec<f64>,
     /// True surfaces are nearer to their facets than this, mm.
     near: f64,
 }
@@ -33,6 +33,21 @@ struct Place {
     base: DVec3,
     normal: DVec3,
     chart: Option<u32>,
+}
+
+impl Place {
+    /// How much larger the image of a length across the sight line is than the length, in the middle of a pixel.
+    fn magnification(&self, pixel: usize, (camera, frame): (&Camera, &Frame)) -> f64 {
+        if !camera.is_perspective() {
+            return 1.0;
+        }
+        let width = frame.size[0] as usize;
+        let at = dvec2((pixel % width) as f64 + 0.5, (pixel / width) as f64 + 0.5);
+        let (from, away) = camera.ray(frame.place(at));
+        let way = self.normal.dot(self.base - from) / self.normal.dot(away);
+        let found = camera.magnification(from + away * way);
+        if found.is_finite() { found.max(f64::MIN_POSITIVE) } else { f64::MIN_POSITIVE }
+    }
 }
 
 /// True surfaces may be so many times the tolerance from their facets: once for the chord, once for rounding.
@@ -45,8 +60,8 @@ pub(super) enum Shown {
     Paper,
     /// A face that has no parameter lines.
     Flat,
-    /// A face with a chart.
-    Round,
+    /// A face with a chart, by its number.
+    Round(u32),
 }
 
 impl<'a> Guide<'a> {
@@ -72,13 +87,15 @@ impl<'a> Guide<'a> {
             known.facets.iter().for_each(|&i| facets[i as usize].chart = number);
         }
         let near = tolerance.mm() * SLACK;
-        let mut is_seen = vec![false; charts.len()];
-        for number in seen.iter().filter(|number| **number > 0) {
-            if let Some(chart) = facets[*number as usize - 1].chart {
-                is_seen[chart as usize] = true;
+        let mut magnified: Vec<f64> = vec![0.0; charts.len()];
+        for (pixel, number) in seen.iter().enumerate().filter(|(_, number)| **number > 0) {
+            let facet = &facets[*number as usize - 1];
+            if let Some(chart) = facet.chart {
+                let known = &mut magnified[chart as usize];
+                *known = known.max(facet.magnification(pixel, (camera, frame)));
             }
         }
-        Guide { frame: *frame, camera: *camera, scale: 1.0, seen, facets, charts, is_seen, near }
+        Guide { frame: *frame, camera: *camera, scale: 1.0, seen, facets, charts, magnified, near }
     }
 
     /// For the same picture made so many times as large.
@@ -90,9 +107,10 @@ impl<'a> Guide<'a> {
         &self.charts
     }
 
-    /// Whether something of a chart is seen.
-    pub(super) fn is_seen(&self, chart: u32) -> bool {
-        self.is_seen[chart as usize]
+    /// How much larger than the surface of a chart its image is at most where it is seen; `None` where it is not.
+    pub(super) fn magnification(&self, chart: u32) -> Option<f64> {
+        let found = self.magnified[chart as usize] * self.scale;
+        (found > 0.0).then_some(found)
     }
 
     /// Where on paper a point of space is.
@@ -104,8 +122,7 @@ impl<'a> Guide<'a> {
     pub(super) fn shown(&self, at: DVec2) -> Shown {
         match self.facet(at) {
             None => Shown::Paper,
-            Some(facet) if facet.chart.is_some() => Shown::Round,
-            Some(_) => Shown::Flat,
+            Some(facet) => facet.chart.map_or(Shown::Flat, Shown::Round),
         }
     }
 

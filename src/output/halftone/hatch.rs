@@ -36,7 +36,7 @@ const GOLDEN: f64 = 0.618_033_988_749_895;
 const PLASTIC: f64 = 0.754_877_666_246_693;
 
 /// Parameter lines of one face in one direction at most; faces with more are hatched in a fixed direction.
-const MOST_LINES: f64 = 100_000.0;
+const MOST_LINES: f64 = 20_000.0;
 
 /// Strokes of a pen half as wide as their pitch in mm, the first at an angle in degrees to the x axis. Where that is
 /// not dark enough others cross them; where it is too dark they are broken. The same strokes are never drawn twice,
@@ -47,16 +47,15 @@ pub(super) fn hatch(
     angle: f64,
     guide: Option<&Guide<'_>>,
 ) -> Vec<Mark> {
-    let hatcher = Hatcher { tones, pitch, guide };
+    let hatcher = Hatcher::new(tones, pitch, guide);
     let mut strokes = vec![];
     for (layer, turn) in LAYERS.into_iter().enumerate() {
         for (number, row) in Rows::of(tones, pitch, angle + turn).enumerate() {
             let line = |t: f64| row.start + row.along * t;
             hatcher.straight(layer, number, row.length, &line, &mut strokes);
         }
-        let charts = guide.map_or(&[][..], |guide| guide.charts());
-        for (chart, number) in charts.iter().zip(0..) {
-            hatcher.round(layer, turn, (chart, number), &mut strokes);
+        for number in 0..hatcher.followed.len() {
+            hatcher.round(layer, turn, number, &mut strokes);
         }
     }
     let strokes = travel::sorted(strokes, tones.frame().window);
@@ -67,6 +66,8 @@ struct Hatcher<'a> {
     tones: &'a Average,
     pitch: f64,
     guide: Option<&'a Guide<'a>>,
+    /// For each chart its largest scale on paper, if strokes follow it.
+    followed: Vec<Option<f64>>,
 }
 
 /// How quickly a line goes from white to black as it gets darker: from nothing to all of it over 1 / STEEP of the range of
@@ -116,7 +117,29 @@ impl Pen {
     }
 }
 
-impl Hatcher<'_> {
+impl<'a> Hatcher<'a> {
+    fn new(tones: &'a Average, pitch: f64, guide: Option<&'a Guide<'a>>) -> Hatcher<'a> {
+        let followed = |guide: &Guide<'_>, chart: &Chart<'_>, number: u32| {
+            let magnified = guide.magnification(number)?;
+            let stretch = chart.most_stretch() * magnified * MARGIN;
+            let lines = chart.size.element_sum() * stretch / pitch;
+            (lines <= MOST_LINES).then_some(stretch)
+        };
+        let followed = guide.map_or(vec![], |guide| {
+            guide.charts().iter().zip(0..).map(|(chart, i)| followed(guide, chart, i)).collect()
+        });
+        Hatcher { tones, pitch, guide, followed }
+    }
+
+    /// Whether rows of a fixed direction are drawn at a place on paper.
+    fn is_plain(&self, guide: &Guide<'_>, at: DVec2) -> bool {
+        match guide.shown(at) {
+            Shown::Paper => false,
+            Shown::Flat => true,
+            Shown::Round(chart) => self.followed[chart as usize].is_none(),
+        }
+    }
+
     /// How far the pen goes on paper before it is thought of again.
     fn step(&self) -> f64 {
         self.pitch * SHORTEST
@@ -132,55 +155,55 @@ impl Hatcher<'_> {
         strokes: &mut Vec<Vec<DVec2>>,
     ) {
         let step = self.step();
-        let fine = self.pitch / FINE;
         let mut pen = Pen::new(number, step);
         // The tone where the line enters the paper holds for the part of a step before the first full one.
         let mut at = pen.left - step;
-        pen.left = 0.0;
         while at < length {
             let dark = 1.0 - self.tones.at(line(at + step / 2.0), step);
             pen.think(share(dark, layer), step);
-            let (from, to) = (at.max(0.0), (at + step).min(length));
-            if pen.is_down && to > from {
-                match self.guide {
-                    None => extend(strokes, line(from), line(to)),
-                    Some(guide) => {
-                        let count = ((to - from) / fine).ceil();
-                        let place = |i: u32| from + (to - from) * f64::from(i) / count;
-                        for i in 0..count as u32 {
-                            let middle = (place(i) + place(i + 1)) / 2.0;
-                            if guide.shown(line(middle)) == Shown::Flat {
-                                extend(strokes, line(place(i)), line(place(i + 1)));
-                            }
-                        }
-                    }
-                }
+            if pen.is_down {
+                self.piece((at.max(0.0), (at + step).min(length)), line, strokes);
             }
             at += step;
         }
     }
 
-    /// Adds the strokes along the parameter lines of a chart, turned by an angle on the surface.
-    fn round(
+    /// Adds a piece of a straight line, as far as it is on faces that have no lines of their own.
+    fn piece(
         &self,
-        layer: usize,
-        turn: f64,
-        (chart, number): (&Chart<'_>, u32),
+        (from, to): (f64, f64),
+        line: &dyn Fn(f64) -> DVec2,
         strokes: &mut Vec<Vec<DVec2>>,
     ) {
-        let Some(guide) = self.guide.filter(|guide| guide.is_seen(number)) else { return };
+        if to <= from {
+            return;
+        }
+        let Some(guide) = self.guide else { return extend(strokes, line(from), line(to)) };
+        let count = ((to - from) * FINE / self.pitch).ceil();
+        let place = |i: u32| line(from + (to - from) * f64::from(i) / count);
+        for i in 0..count as u32 {
+            let (start, end) = (place(i), place(i + 1));
+            if self.is_plain(guide, (start + end) / 2.0) {
+                extend(strokes, start, end);
+            }
+        }
+    }
+
+    /// Adds the strokes along the parameter lines of a chart, turned by an angle on the surface.
+    fn round(&self, layer: usize, turn: f64, number: usize, strokes: &mut Vec<Vec<DVec2>>) {
+        let (Some(guide), Some(most)) = (self.guide, self.followed[number]) else { return };
+        let chart = &guide.charts()[number];
         let angle = chart.first + turn;
         let along = dvec2(cos_deg(angle), sin_deg(angle));
-        let bundle = Bundle { guide, chart, number, along };
-        let Some(most) = bundle.most() else { return };
+        let bundle = Bundle { guide, chart, number: number as u32, along };
         let half = chart.size / 2.0;
         let reach = half.dot(along.perp().abs());
-        let count = lines(2.0 * reach * most.apart / self.pitch);
+        let count = lines(2.0 * reach * most / self.pitch);
         let gap = 2.0 * reach / count;
         for line in 0..count as usize {
             let base = along.perp() * ((line as f64 + 0.5) * gap - reach);
             let Some((from, to)) = clip(base, along, half) else { continue };
-            let walk = Walk { start: half + base, from, to, gap, most: most.stretch, line };
+            let walk = Walk { start: half + base, from, to, gap, most, line };
             self.walk(layer, &bundle, &walk, strokes);
         }
     }
@@ -234,9 +257,6 @@ impl Hatcher<'_> {
 const LEAST: f64 = 64.0;
 const MOST_STEPS: f64 = 4096.0;
 
-/// Places of a chart along each parameter where its scale on paper is looked at.
-const PROBES: u32 = 24;
-
 /// Lines come so much nearer than the largest scale that was found would need.
 const MARGIN: f64 = 1.1;
 
@@ -245,7 +265,7 @@ const DIFFERENCE: f64 = 1e-5;
 
 /// So many lines that halves, quarters and eighths of them are evenly spread where the surface closes.
 fn lines(wanted: f64) -> f64 {
-    let wanted = wanted.clamp(1.0, MOST_LINES);
+    let wanted = wanted.max(1.0);
     let unit = (wanted.log2().floor() - 2.0).max(0.0).exp2();
     (wanted / unit).ceil() * unit
 }
@@ -266,12 +286,6 @@ struct Spot {
     /// How fast the place on paper moves along the line.
     along: DVec2,
     /// How fast lines beside it move away on paper.
-    apart: f64,
-}
-
-/// The largest scales on paper: along lines and between them.
-struct Most {
-    stretch: f64,
     apart: f64,
 }
 
@@ -297,23 +311,6 @@ impl Bundle<'_> {
         let apart = along.perp_dot(across).abs() / along.length();
         apart.is_finite().then_some(Spot { point, at: place, along, apart })
     }
-
-    /// The largest scales where the chart is seen, or anywhere if that is not found; `None` if it has no image.
-    fn most(&self) -> Option<Most> {
-        let part = |i: u32| (f64::from(i) + 0.5) / f64::from(PROBES);
-        let cells = (0..PROBES).flat_map(|i| (0..PROBES).map(move |j| dvec2(part(i), part(j))));
-        let spots: Vec<Spot> = cells.filter_map(|at| self.spot(at * self.chart.size)).collect();
-        let seen = |spot: &&Spot| self.guide.sees(self.number, spot.point, spot.at);
-        let largest = |spots: &mut dyn Iterator<Item = &Spot>| {
-            spots.fold(Most { stretch: 0.0, apart: 0.0 }, |most, spot| Most {
-                stretch: most.stretch.max(spot.along.length() * MARGIN),
-                apart: most.apart.max(spot.apart * MARGIN),
-            })
-        };
-        let most = largest(&mut spots.iter().filter(seen));
-        let most = if most.apart > 0.0 { most } else { largest(&mut spots.iter()) };
-        (most.apart > 0.0).then_some(most)
-    }
 }
 
 /// Which part of a layer's rows is drawn, so that all layers up to it leave as much white as the tone has, or as
@@ -328,10 +325,13 @@ fn share(dark: f64, layer: usize) -> f64 {
     wanted.clamp(0.0, 1.0)
 }
 
+/// Strokes that are nearer than this, mm, go on: places on one line differ by rounding.
+const SAME: f64 = 1e-9;
+
 /// Lengthens the last stroke if it ends where this one begins, else begins one.
 fn extend(strokes: &mut Vec<Vec<DVec2>>, from: DVec2, to: DVec2) {
     match strokes.last_mut() {
-        Some(last) if last.last() == Some(&from) => {
+        Some(last) if last[last.len() - 1].distance(from) < SAME => {
             last.pop();
             last.push(to);
         }
