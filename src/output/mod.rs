@@ -5,5 +5,6 @@ pub mod drawing;
 pub mod halftone;
 pub mod mesh;
 pub mod number;
+pub mod pixels;
 pub mod scad;
 pub mod sheet;

@@ -17,7 +17,7 @@ use crate::{
         sheet::{self, DrawingFormat, Page},
     },
     realize::Realizer,
-    shape::{PageSpec, ShadeSpec, ShapeGraph, ShapeId, Stretched, ViewSpec},
+    shape::{PageSpec, ShadeSpec, ShapeGraph, ShapeId, Stretched, ViewSpec, halftone::ScreenSpec},
 };
 
 /// What a file is written as.
@@ -93,22 +93,18 @@ impl Format {
         match product {
             Product::Shape(_) => matches!(self, Format::Mesh(_) | Format::Scad),
             Product::View(_) | Product::Sheet(_) => self.is_drawing(),
-            Product::Shade(_) => self.of_picture().is_some(),
+            // Pixels are no lines.
+            Product::Shade(shade) => match self {
+                Format::Drawing(DrawingFormat::Dxf) => shade.screen != ScreenSpec::Grey,
+                Format::Drawing(_) | Format::Picture(_) => true,
+                Format::Mesh(_) | Format::Scad => false,
+            },
         }
     }
 
     /// Whether it holds lines, not solids.
     pub fn is_drawing(self) -> bool {
         matches!(self, Format::Drawing(_))
-    }
-
-    /// What a picture is written as in this format.
-    fn of_picture(self) -> Option<PictureFormat> {
-        match self {
-            Format::Picture(format) => Some(format),
-            Format::Drawing(DrawingFormat::Svg) => Some(PictureFormat::Svg),
-            _ => None,
-        }
     }
 
     fn holds_parts(self) -> bool {
@@ -255,14 +251,16 @@ impl Artifact {
         said: &mut Vec<Diagnostic>,
     ) -> Result<Vec<u8>, Diagnostic> {
         match (&paper.kind, self.format) {
-            (PaperKind::Shade(spec), format) => {
-                let Some(format) = format.of_picture() else {
-                    return Err(self.refused("this format holds no picture"));
-                };
-                let (halftone, warnings) = drafter.shade(spec)?;
+            (PaperKind::Shade(spec), Format::Picture(format)) => {
+                let (halftone, warnings) = drafter.shade(spec, 1.0)?;
                 said.extend(warnings);
                 let words = "only a picture with `screen = overstrike()` is text";
-                format.write(&halftone, &paper.name).ok_or_else(|| self.refused(words))
+                format.write(&halftone).ok_or_else(|| self.refused(words))
+            }
+            (PaperKind::Shade(spec), Format::Drawing(format)) => {
+                let (halftone, warnings) = drafter.shade(spec, 1.0)?;
+                said.extend(warnings);
+                Ok(sheet::write(format, &halftone.print().page(&paper.name)))
             }
             (PaperKind::View(view), Format::Drawing(format)) => {
                 let drawn = drafter.draw(view)?;

@@ -109,8 +109,11 @@ impl<'a> Drafter<'a> {
             let bounds = bounds(view, &meshes, &free);
             let shown_axes = axes.iter().filter_map(|ends| on_paper(ends, &camera)).collect();
             let subjects = Subjects { solids: meshes, free, axes, patterns };
-            let drawing = subjects.lines(view, &camera, &self.options(view));
+            let mut drawing = subjects.lines(view, &camera, &self.options(view));
             warnings.extend(blank(&drawing, view, bounds));
+            if let Some(cast) = &view.shadow {
+                subjects.cast(&mut drawing, cast, view, (&camera, &self.options(view)));
+            }
             let dimensions = view.dims.iter().map(|dim| dimension(dim, view, &camera));
             let dimensions = dimensions.collect::<Result<_, _>>()?;
             let parts = view.shapes.iter().map(|&shape| name_of(self.graph, shape)).collect();
@@ -272,6 +275,7 @@ fn layer(name: PenName) -> Layer {
         PenName::Free => Layer::Free,
         PenName::Upper => Layer::Upper,
         PenName::Lower => Layer::Lower,
+        PenName::Shadow => Layer::Shadow,
     }
 }
 

@@ -22,6 +22,7 @@ mod model;
 mod outline;
 mod patterns;
 mod shading;
+mod shadows;
 mod sheet;
 mod subjects;
 mod wrapped;

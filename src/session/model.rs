@@ -21,6 +21,7 @@ use crate::{
     shape::{
         Geometry, Kind, ShapeId, ViewSpec,
         drawing::{Place, Projection, StyleSpec},
+        halftone::{ScreenSpec, ShadeSpec, SunSpec},
     },
 };
 
@@ -188,6 +189,7 @@ impl<'s> Model<'s> {
             hidden: sight.hidden,
             method: Method::Auto,
             style: StyleSpec::default(),
+            shadow: None,
             section: None,
             center_lines: false,
             dims: vec![],
@@ -197,6 +199,40 @@ impl<'s> Model<'s> {
         };
         let content = Content::Paper(Paper { name, kind: PaperKind::View(Arc::new(view)), span });
         Some(Artifact { file: file.to_string(), format, content })
+    }
+
+    /// The first half-tone of the given names, or of all there are, in characters, at most so many columns and rows; where
+    /// there is none all parts, lit from the upper left. `None` where there is neither, or where it cannot be made.
+    pub fn preview(
+        &mut self,
+        names: &[String],
+        sight: &Sight,
+        size: [u32; 2],
+        diagnostics: &mut Vec<Diagnostic>,
+    ) -> Option<String> {
+        let (parts, papers) = self.products(names, diagnostics);
+        diagnostics.extend(self.check(names));
+        let shade = papers.iter().find_map(|paper| match &paper.kind {
+            PaperKind::Shade(shade) => Some(ShadeSpec::clone(shade)),
+            PaperKind::View(_) | PaperKind::Sheet(_) => None,
+        });
+        let Some(shade) = shade.or_else(|| lit_parts(&parts, sight)) else {
+            if !diagnostics.iter().any(Diagnostic::is_error) {
+                let words = "the model has neither a half-tone nor a part to show";
+                diagnostics.push(Diagnostic::error(Code::Usage, words));
+            }
+            return None;
+        };
+        match self.drafter().preview(&shade, size) {
+            Ok((text, warnings)) => {
+                diagnostics.extend(warnings);
+                Some(text)
+            }
+            Err(error) => {
+                diagnostics.push(error);
+                None
+            }
+        }
     }
 
     /// The files to write. Without names: every export, and every output that none of them writes.
@@ -424,6 +460,24 @@ impl<'s> Model<'s> {
     }
 }
 
+/// Parts as a half-tone in light from the upper left.
+fn lit_parts(parts: &[Part], sight: &Sight) -> Option<ShadeSpec> {
+    let span = parts.first()?.span;
+    Some(ShadeSpec {
+        shapes: parts.iter().map(|part| part.shape).collect(),
+        surfaces: vec![],
+        projection: sight.projection,
+        target: sight.target,
+        window: None,
+        suns: vec![SunSpec::DEFAULT],
+        ground: None,
+        screen: ScreenSpec::Grey,
+        lines: None,
+        dpi: 1.0,
+        place: Place(span),
+    })
+}
+
 /// What of a product is put on paper; else its shape.
 fn paper_kind(product: &Product) -> Result<PaperKind, ShapeId> {
     match product {
@@ -445,7 +499,12 @@ fn unsuited(name: &str, product: &Product, format: Format, export: &ExportInfo) 
         Product::View(_) | Product::Sheet(_) => {
             ("drawing", "drawings are written as .svg, .pdf or .dxf".to_string())
         }
-        Product::Shade(_) => ("picture", "pictures are written as .png, .svg or .txt".to_string()),
+        Product::Shade(shade) if shade.screen == ScreenSpec::Grey && format.is_drawing() => {
+            ("picture of pixels", "take black shapes, such as `screen = dots()`".to_string())
+        }
+        Product::Shade(_) => {
+            ("picture", "pictures are written as .png, .svg, .pdf, .dxf or .txt".to_string())
+        }
     };
     let words = format!("a {kind} cannot be written as .{extension}");
     Diagnostic::error(Code::UnwritableFile, words).label(export.span, "").help(help)

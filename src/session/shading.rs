@@ -1,17 +1,24 @@
-//! From what a model says of a picture to pixels: makes the bodies, finds what the picture holds, and lights it.
+//! From what a model says of a picture to tones: makes the bodies, finds what the picture holds, and lights it.
+
+use std::cell::Cell;
 
 use glam::DVec2;
 
-use super::drafting::{Drafter, Letterer, at, refused, sight, style};
+use super::{
+    drafting::{Drafter, Letterer, at, refused, sight, style},
+    outline::Tracer,
+    patterns,
+};
 use crate::{
     base::{Code, Diagnostic, Phase},
-    geom::PolyMesh,
+    geom::{CurvedGrid, PolyMesh, Screen},
     output::{
-        drawing::{Body, Camera, Hidden, Options, Scene, Window, visible_lines},
+        drawing::{Body, Camera, Hidden, Kind, Options, Scene, Window, visible_lines},
         halftone::{
-            self, Frame, Halftone, Light, Mark, Screen, Sun, Tones, ground_shadow, overstrike,
+            self, Frame, Halftone, Light, LightError, Picture, Sun, Tones, cell_dpi, cell_width,
+            ground_shadow, overstrike, preview,
         },
-        sheet::Layer,
+        sheet::{Figure, Ink},
     },
     realize,
     shape::{
@@ -27,9 +34,40 @@ const MARGIN: f64 = 0.03;
 const REACH: f64 = 1.0;
 
 impl Drafter<'_> {
-    /// A picture, and what is to be said about it. Fails with the diagnostic of a shape that cannot be made, and for
-    /// pictures without or with too many pixels.
-    pub fn shade(&self, spec: &ShadeSpec) -> Result<(Halftone, Vec<Diagnostic>), Diagnostic> {
+    /// A picture at a scale, paper over model, and what is to be said about it. Its screen and pixels are as fine on
+    /// paper at any scale. Fails with the diagnostic of a shape that cannot be made, and for pictures without or with
+    /// too many pixels.
+    pub fn shade(
+        &self,
+        spec: &ShadeSpec,
+        scale: f64,
+    ) -> Result<(Halftone, Vec<Diagnostic>), Diagnostic> {
+        self.lit(spec, scale, &|_| spec.dpi * scale)
+    }
+
+    /// A picture in characters, at most so many columns and rows, and what is to be said about it.
+    pub fn preview(
+        &self,
+        spec: &ShadeSpec,
+        size: [u32; 2],
+    ) -> Result<(String, Vec<Diagnostic>), Diagnostic> {
+        let width = Cell::new(1.0);
+        let dpi = |window: &Window| {
+            width.set(cell_width(window, size));
+            cell_dpi(width.get())
+        };
+        let grey = ShadeSpec { screen: ScreenSpec::Grey, ..spec.clone() };
+        let (halftone, warnings) = self.lit(&grey, 1.0, &dpi)?;
+        Ok((preview(&halftone.picture(), &Letterer, width.get()), warnings))
+    }
+
+    /// A picture with pixels so fine as its window asks for.
+    fn lit(
+        &self,
+        spec: &ShadeSpec,
+        scale: f64,
+        dpi: &dyn Fn(&Window) -> f64,
+    ) -> Result<(Halftone, Vec<Diagnostic>), Diagnostic> {
         self.realizer.realize(self.graph, &spec.shapes);
         let mut warnings = vec![];
         let mut solids = vec![];
@@ -41,73 +79,86 @@ impl Drafter<'_> {
         let place = spec.place.0;
         let camera = sight(spec.projection, spec.target, spec.window);
         let camera = camera.map_err(|error| refused(&error, place))?;
-        let suns = spec.suns.iter().map(|sun| {
-            let sun = Sun::new(sun.toward, sun.ambient)?.with_strength(sun.strength)?;
-            Ok(sun)
-        });
-        let suns = suns.collect::<Result<Vec<Sun>, halftone::LightError>>();
-        let suns = suns.map_err(|error| at(Code::Degenerate, error.to_string(), place))?;
-        let light = Light { suns, ground: spec.ground };
-        self.timed(Phase::Drawings, || {
+        let light = light(spec).map_err(|error| at(Code::Degenerate, error.to_string(), place))?;
+        self.timed(Phase::Halftones, || {
+            let own: Vec<&PolyMesh> = solids.iter().map(|s| s.mesh()).collect();
+            let tracer = Tracer { realizer: self.realizer, graph: self.graph };
+            let strokes = patterns::all(&tracer, &spec.shapes, &own)?;
             let sheets: Vec<PolyMesh> = spec.surfaces.iter().map(|s| s.mesh()).collect();
-            let meshes = solids.iter().map(|s| (s.mesh(), false));
+            let meshes = own.into_iter().map(|mesh| (mesh, false));
             let meshes = meshes.chain(sheets.iter().map(|mesh| (mesh, true))).zip(0..);
             let bodies = meshes.map(|((mesh, smooth), id)| Body { mesh, id, smooth }).collect();
-            let scene = Scene { bodies, strokes: vec![] };
+            let scene = Scene { bodies, strokes };
             let Some(window) = camera.window().or_else(|| shown(&scene, &camera, &light)) else {
                 let words = "the picture shows nothing: its shapes are empty or behind the eye";
                 return Err(at(Code::EmptyResult, words, place));
             };
-            let frame = Frame::new(window, spec.dpi);
-            let frame = frame.map_err(|error| {
+            let frame = Frame::new(window, dpi(&window)).map_err(|error| {
                 let help = "change `window` or `dpi`";
                 at(Code::Limit, error.to_string(), place).help(help)
             })?;
-            let picture = halftone::picture(&scene, &camera, &light, &frame);
-            let lines = match &spec.lines {
-                Some(style) => self.lines(&scene, &camera, &frame, style),
-                None => vec![],
-            };
-            if let ScreenSpec::Overstrike { levels } = spec.screen {
-                let text = overstrike(&picture, &Letterer, levels as usize);
-                return Ok((Halftone { tones: Tones::Text(text), lines }, warnings));
-            }
-            let Some(screen) = screen(spec.screen) else {
-                return Ok((Halftone { tones: Tones::Pixels(picture), lines }, warnings));
-            };
-            let ink = screen.ink(&picture).map_err(|error| {
-                let help = "make the pitch larger, or more pixels with `dpi`";
-                at(Code::Limit, error.to_string(), place).help(help)
-            })?;
-            Ok((Halftone { tones: Tones::Ink(ink), lines }, warnings))
+            let tones = self.tones(spec, (&scene, &camera, &light, &frame), scale)?;
+            let pens = style(spec.lines.as_ref().unwrap_or(&StyleSpec::default()));
+            let figure = Figure { style: pens, ..self.lines(scene, &camera, &frame, spec) };
+            let lines: Vec<Ink> = figure.inks(scale, &Letterer);
+            Ok((Halftone { tones, lines, style: figure.style }, warnings))
         })
     }
 
-    /// The edges that are seen in a picture.
-    fn lines(&self, scene: &Scene, camera: &Camera, frame: &Frame, spec: &StyleSpec) -> Vec<Mark> {
+    /// The tones of a picture as its screen makes them.
+    fn tones(
+        &self,
+        spec: &ShadeSpec,
+        (scene, camera, light, frame): (&Scene, &Camera, &Light, &Frame),
+        scale: f64,
+    ) -> Result<Tones, Diagnostic> {
+        let larger = |picture| Picture { frame: frame.scaled(scale), ..picture };
+        let plain = || larger(halftone::picture(scene, camera, light, frame));
+        let ink = match spec.screen {
+            ScreenSpec::Grey => return Ok(Tones::Pixels(plain())),
+            ScreenSpec::Overstrike { levels } => {
+                return Ok(Tones::Text(overstrike(&plain(), &Letterer, levels as usize)));
+            }
+            ScreenSpec::Ink(screen @ Screen::Hatch { .. }) => {
+                let first = scene.bodies.len() - spec.surfaces.len();
+                let grids = spec.surfaces.iter().map(|grid| &**grid);
+                let grids: Vec<(u32, &CurvedGrid)> = (first as u32..).zip(grids).collect();
+                let tolerance = self.realizer.tolerance();
+                let (picture, guide) =
+                    halftone::guided(scene, (camera, light, frame), &grids, tolerance);
+                screen.ink_along(&larger(picture), Some(&guide.scaled(scale)))
+            }
+            ScreenSpec::Ink(screen) => screen.ink(&plain()),
+        };
+        ink.map(Tones::Ink).map_err(|error| {
+            let help = "make the pitch larger, or more pixels with `dpi`";
+            at(Code::Limit, error.to_string(), spec.place.0).help(help)
+        })
+    }
+
+    /// The edges that are seen in a picture, if they are wanted, and the figures on faces.
+    fn lines(&self, scene: Scene, camera: &Camera, frame: &Frame, spec: &ShadeSpec) -> Figure {
         let standard = Options::default();
+        let crease = spec.lines.as_ref().and_then(|style| style.crease);
         let options = Options {
             hidden: Hidden::Off,
             tolerance: self.realizer.tolerance(),
-            crease: spec.crease.unwrap_or(standard.crease),
+            crease: crease.unwrap_or(standard.crease),
             ..standard
         };
-        let Ok(camera) = camera.with_window(frame.window) else { return vec![] };
-        let drawing = visible_lines(scene, &camera, &options);
-        halftone::lines(&drawing, style(spec).pen(Layer::Visible).width)
+        let window = camera.with_window(frame.window).ok();
+        let wanted = spec.lines.is_some() || !scene.strokes.is_empty();
+        let Some(camera) = window.filter(|_| wanted) else { return Figure::default() };
+        let mut drawing = visible_lines(&scene, &camera, &options);
+        drawing.lines.retain(|line| spec.lines.is_some() || line.kind == Kind::Pattern);
+        Figure { drawing, ..Figure::default() }
     }
 }
 
-/// The screen that is asked for, if tones are not to stay pixels.
-fn screen(spec: ScreenSpec) -> Option<Screen> {
-    Some(match spec {
-        ScreenSpec::Grey | ScreenSpec::Overstrike { .. } => return None,
-        ScreenSpec::Dots { pitch, angle } => Screen::Dots { pitch, angle },
-        ScreenSpec::Lines { pitch, angle } => Screen::Lines { pitch, angle },
-        ScreenSpec::Hatch { pitch, angle } => Screen::Hatch { pitch, angle },
-        ScreenSpec::Stipple { pitch, seed } => Screen::Stipple { pitch, seed },
-        ScreenSpec::Diffusion { side, atkinson } => Screen::Diffusion { side, atkinson },
-    })
+fn light(spec: &ShadeSpec) -> Result<Light, LightError> {
+    let suns = spec.suns.iter();
+    let suns = suns.map(|sun| Sun::new(sun.toward, sun.ambient)?.with_strength(sun.strength));
+    Ok(Light { suns: suns.collect::<Result<_, _>>()?, ground: spec.ground })
 }
 
 /// The rectangle around the images of all bodies, and of their shadows as far as these are not much farther.

@@ -1,17 +1,27 @@
 //! From what a model says of a page to ink on it.
 
-use super::drafting::{Drafter, Letterer};
+use std::sync::Arc;
+
+use super::drafting::{Drafter, Drawn, Letterer};
 use crate::{
     base::{Code, Diagnostic, Phase},
     output::{
         drawing::View,
-        sheet::{self, Misfit, Page, Placing, Sheet, Spot, Title, scale_text},
+        sheet::{
+            self, Misfit, Page, Placing, Print, Sheet, Spot, Subject as Ink, Title, scale_text,
+        },
     },
     shape::{
-        PageSpec, ViewSpec,
-        drawing::{Placed, Position, Projection, TitleSpec},
+        PageSpec,
+        drawing::{Placed, Position, Projection, Subject, TitleSpec},
     },
 };
+
+/// What stands on a page, made.
+enum Made {
+    View(Arc<Drawn>),
+    Shade(Print),
+}
 
 /// A page with its views drawn, and warnings. Fails with all reasons why it cannot be made.
 pub fn page(
@@ -19,12 +29,13 @@ pub fn page(
     name: &str,
     spec: &PageSpec,
 ) -> Result<(Page, Vec<Diagnostic>), Vec<Diagnostic>> {
-    let (mut drawn, mut warnings, mut errors) = (vec![], vec![], vec![]);
-    for placed in &spec.views {
-        match drafter.draw(&placed.view) {
-            Ok(view) => {
-                warnings.extend(view.warnings.clone());
-                drawn.push(view);
+    let (mut made, mut warnings, mut errors) = (vec![], vec![], vec![]);
+    let scales = scales(spec);
+    for (placed, scale) in spec.views.iter().zip(&scales) {
+        match make(drafter, placed, *scale) {
+            Ok((found, said)) => {
+                warnings.extend(said);
+                made.push(found);
             }
             Err(error) => errors.push(error),
         }
@@ -32,16 +43,20 @@ pub fn page(
     if !errors.is_empty() {
         return Err(errors);
     }
-    let placings = spec.views.iter().zip(&drawn).map(|(placed, view)| Placing {
-        figure: &view.figure,
-        name: String::new(),
-        direction: direction(&placed.view),
-        spot: match placed.position {
-            Position::At(at) => Spot::At(at),
-            Position::Beside { other, gap } => Spot::Beside { other, gap },
-        },
-        scale: placed.scale.unwrap_or(spec.scale),
-    });
+    let placings =
+        spec.views.iter().zip(&made).zip(scales).map(|((placed, made), scale)| Placing {
+            subject: match made {
+                Made::View(drawn) => Ink::Figure(&drawn.figure),
+                Made::Shade(print) => Ink::Print(print),
+            },
+            name: String::new(),
+            direction: direction(placed.subject.projection()),
+            spot: match placed.position {
+                Position::At(at) => Spot::At(at),
+                Position::Beside { other, gap } => Spot::Beside { other, gap },
+            },
+            scale,
+        });
     let placings: Vec<Placing> = placings.collect();
     let sheet = Sheet {
         size: spec.size,
@@ -73,9 +88,40 @@ fn block(title: &TitleSpec, spec: &PageSpec) -> Title {
     Title { title: title.title.to_string(), fields }
 }
 
-/// The usual direction of a view.
-fn direction(view: &ViewSpec) -> Option<View> {
-    match view.projection {
+/// Paper over model of what stands on a page: its own, that of the page, or that of what it stands beside.
+fn scales(spec: &PageSpec) -> Vec<f64> {
+    let mut scales: Vec<f64> = vec![];
+    for placed in &spec.views {
+        scales.push(match placed.position {
+            Position::At(_) => placed.scale.unwrap_or(spec.scale),
+            Position::Beside { other, .. } => scales.get(other).copied().unwrap_or(spec.scale),
+        });
+    }
+    scales
+}
+
+/// A view drawn, or a picture made for its scale, and warnings.
+fn make(
+    drafter: &Drafter,
+    placed: &Placed,
+    scale: f64,
+) -> Result<(Made, Vec<Diagnostic>), Diagnostic> {
+    match &placed.subject {
+        Subject::View(view) => {
+            let drawn = drafter.draw(view)?;
+            let warnings = drawn.warnings.clone();
+            Ok((Made::View(drawn), warnings))
+        }
+        Subject::Shade(shade) => {
+            let (halftone, warnings) = drafter.shade(shade, scale)?;
+            Ok((Made::Shade(halftone.print()), warnings))
+        }
+    }
+}
+
+/// The side that a projection is from.
+fn direction(projection: Projection) -> Option<View> {
+    match projection {
         Projection::Side(side) => Some(side),
         _ => None,
     }
@@ -94,5 +140,15 @@ fn told(misfit: &Misfit, spec: &PageSpec) -> Diagnostic {
             (place(*view), "FRONT has TOP, BOTTOM, LEFT and RIGHT beside it; others take `at =`")
         }
     };
-    Diagnostic::error(Code::OutOfRange, misfit.to_string()).label(span, "").help(help)
+    let words = match misfit {
+        Misfit::Overflow { view, .. } | Misfit::OnTitle { view, .. } if is_picture(*view, spec) => {
+            misfit.to_string().replacen("the view", "the picture", 1)
+        }
+        _ => misfit.to_string(),
+    };
+    Diagnostic::error(Code::OutOfRange, words).label(span, "").help(help)
+}
+
+fn is_picture(view: usize, spec: &PageSpec) -> bool {
+    spec.views.get(view).is_some_and(|placed| matches!(placed.subject, Subject::Shade(_)))
 }

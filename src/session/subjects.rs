@@ -2,14 +2,17 @@
 
 use glam::DVec3;
 
-use super::outline::Outline;
+use super::{drafting::style, outline::Outline, shadows};
 use crate::{
     geom::{Hidden, PolyMesh},
-    output::drawing::{
-        Body, Camera, Drawing, HeightField, Kind, Options, Scene, Stroke, grid_strokes,
-        horizon_lines, visible_lines,
+    output::{
+        drawing::{
+            Body, Camera, Drawing, HeightField, Kind, Options, Scene, Stroke, grid_strokes,
+            horizon_lines, visible_lines,
+        },
+        halftone::Sun,
     },
-    shape::ViewSpec,
+    shape::{ViewSpec, drawing::CastSpec},
 };
 
 /// All that one view shows, made.
@@ -40,14 +43,31 @@ impl Subjects<'_> {
         horizon_lines(&HeightField::of(surface)?, camera, 0).ok()
     }
 
-    fn scene_lines(&self, view: &ViewSpec, camera: &Camera, options: &Options) -> Drawing {
+    /// Adds the shadows that solids and surfaces cast on each other and on the ground.
+    pub fn cast(
+        &self,
+        drawing: &mut Drawing,
+        cast: &CastSpec,
+        view: &ViewSpec,
+        (camera, options): (&Camera, &Options),
+    ) {
+        let Ok(sun) = Sun::new(cast.toward, 0.0) else { return };
         let sheets: Vec<PolyMesh> = view.surfaces.iter().map(|s| s.mesh()).collect();
+        let scene = Scene { bodies: self.bodies(&sheets), strokes: vec![] };
+        let pitch = style(&view.style).hatch_pitch / 2.0;
+        shadows::add(drawing, &scene, camera, options, (&sun, cast.ground, pitch));
+    }
+
+    fn bodies<'a>(&'a self, sheets: &'a [PolyMesh]) -> Vec<Body<'a>> {
         let solids = self.solids.iter().map(|&mesh| (mesh, false));
         let meshes = solids.chain(sheets.iter().map(|mesh| (mesh, true))).zip(0..);
-        let bodies: Vec<Body> =
-            meshes.map(|((mesh, smooth), id)| Body { mesh, id, smooth }).collect();
-        let strokes = self.strokes(view, camera);
-        visible_lines(&Scene { bodies, strokes }, camera, options)
+        meshes.map(|((mesh, smooth), id)| Body { mesh, id, smooth }).collect()
+    }
+
+    fn scene_lines(&self, view: &ViewSpec, camera: &Camera, options: &Options) -> Drawing {
+        let sheets: Vec<PolyMesh> = view.surfaces.iter().map(|s| s.mesh()).collect();
+        let scene = Scene { bodies: self.bodies(&sheets), strokes: self.strokes(view, camera) };
+        visible_lines(&scene, camera, options)
     }
 
     fn strokes(&self, view: &ViewSpec, camera: &Camera) -> Vec<Stroke> {

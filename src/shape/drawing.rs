@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::node::ShapeId;
+use super::{halftone::ShadeSpec, node::ShapeId};
 use crate::{
     base::Span,
     geom::{CurvedGrid, Hidden, Method, Placement, View, mesh::Color},
@@ -156,11 +156,13 @@ pub enum PenName {
     Upper,
     /// Grid lines of a surface seen on its lower side.
     Lower,
+    /// Outlines of cast shadows and lines in them.
+    Shadow,
 }
 
 impl PenName {
     /// All of them with the words of the language.
-    pub const ALL: [(PenName, &'static str); 11] = [
+    pub const ALL: [(PenName, &'static str); 12] = [
         (PenName::Visible, "visible"),
         (PenName::Hidden, "hidden"),
         (PenName::Center, "center"),
@@ -172,6 +174,7 @@ impl PenName {
         (PenName::Free, "free"),
         (PenName::Upper, "upper"),
         (PenName::Lower, "lower"),
+        (PenName::Shadow, "shadow"),
     ];
 }
 
@@ -267,6 +270,15 @@ pub struct CuttingSpec {
     pub place: Place,
 }
 
+/// Cast shadows in a view.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct CastSpec {
+    /// Towards the sun; not zero.
+    pub toward: DVec3,
+    /// Height of the plane that shadows fall on beside the shapes, if there is one.
+    pub ground: Option<f64>,
+}
+
 /// A view of shapes.
 #[derive(Clone, PartialEq, Debug)]
 pub struct ViewSpec {
@@ -290,6 +302,8 @@ pub struct ViewSpec {
     pub method: Method,
     /// Line widths and more.
     pub style: StyleSpec,
+    /// Which shadows are drawn, if any are.
+    pub shadow: Option<CastSpec>,
     /// Where the shapes are cut.
     pub section: Option<CutPlane>,
     /// Whether holes and round bodies get centre lines.
@@ -318,11 +332,30 @@ pub enum Position {
     },
 }
 
-/// A view on a page.
+/// What is put on a page.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Subject {
+    /// A view.
+    View(Arc<ViewSpec>),
+    /// A half-tone.
+    Shade(Arc<ShadeSpec>),
+}
+
+impl Subject {
+    /// Where the eye is.
+    pub fn projection(&self) -> Projection {
+        match self {
+            Subject::View(view) => view.projection,
+            Subject::Shade(shade) => shade.projection,
+        }
+    }
+}
+
+/// A view or picture on a page.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Placed {
-    /// The view.
-    pub view: Arc<ViewSpec>,
+    /// The view or picture.
+    pub subject: Subject,
     /// Where.
     pub position: Position,
     /// Its own scale.

@@ -10,7 +10,7 @@ use super::{
     drawing::{Place, Projection, StyleSpec},
     node::ShapeId,
 };
-use crate::geom::CurvedGrid;
+use crate::geom::{CurvedGrid, Screen};
 
 /// Parallel light.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -23,50 +23,23 @@ pub struct SunSpec {
     pub strength: f64,
 }
 
+impl SunSpec {
+    /// From the upper left before the scene, for who looks along +y.
+    pub const DEFAULT: SunSpec =
+        SunSpec { toward: DVec3::new(-1.0, -2.0, 3.0), ambient: 0.2, strength: 1.0 };
+}
+
 /// What a picture's tones are made of.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum ScreenSpec {
     /// Grey or coloured pixels.
     Grey,
-    /// Dots in a lattice.
-    Dots {
-        /// From dot to dot, above 0.
-        pitch: f64,
-        /// Of the rows of dots, degrees from the x axis.
-        angle: f64,
-    },
-    /// Lines that swell.
-    Lines {
-        /// From line to line, above 0.
-        pitch: f64,
-        /// Degrees from the x axis.
-        angle: f64,
-    },
-    /// Strokes that cross in the dark.
-    Hatch {
-        /// From stroke to stroke, above 0.
-        pitch: f64,
-        /// Of the first strokes, degrees from the x axis.
-        angle: f64,
-    },
-    /// Equal dots without an order.
-    Stipple {
-        /// Least distance, above 0.
-        pitch: f64,
-        /// What spreads them.
-        seed: u64,
-    },
+    /// Black shapes.
+    Ink(Screen),
     /// Signs struck over each other.
     Overstrike {
         /// Levels of tone, 2 or more.
         levels: u32,
-    },
-    /// Black squares.
-    Diffusion {
-        /// Their side, above 0.
-        side: f64,
-        /// Atkinson's filter in place of Floyd's and Steinberg's.
-        atkinson: bool,
     },
 }
 

@@ -22,7 +22,8 @@ use katachi::{
     kernel::brep::primitive::{cuboid, sphere},
     output::{
         drawing::{Camera, Scene, Window},
-        halftone::{Frame, Light, Screen, Sun, picture, svg},
+        halftone::{DotShape, Frame, Halftone, Light, Screen, Sun, Tones, picture},
+        sheet::{self, DrawingFormat, Style},
     },
 };
 use serde_json::json;
@@ -77,12 +78,22 @@ fn serve(subject: &Subject) {
         let made = picture(&scene, &camera, &light, &frame);
         let picture_ms = start.elapsed().as_secs_f64() * 1e3;
         let ink = subject.screen.map(|screen| screen.ink(&made).expect("a coarse screen"));
-        let bytes = ink.as_ref().map_or(0, |ink| svg(ink, "dots").len());
+        let marks = ink.as_ref().map_or(0, |ink| ink.marks.len());
+        let print = ink.map(|ink| {
+            let (tones, style) = (Tones::Ink(ink), Style::default());
+            Halftone { tones, lines: vec![], style }.print().page("dots")
+        });
+        let written = |format| print.as_ref().map_or(0, |page| sheet::write(format, page).len());
+        let bytes = written(DrawingFormat::Svg);
         let ms = start.elapsed().as_secs_f64() * 1e3;
-        let marks = ink.map_or(0, |ink| ink.marks.len());
+        let pdf_bytes = written(DrawingFormat::Pdf);
+        let pdf_ms = start.elapsed().as_secs_f64() * 1e3 - ms;
         println!(
             "{}",
-            json!({ "ms": ms, "picture_ms": picture_ms, "size": frame.size, "marks": marks, "bytes": bytes })
+            json!({
+                "ms": ms, "picture_ms": picture_ms, "size": frame.size, "marks": marks, "bytes": bytes,
+                "pdf_ms": pdf_ms, "pdf_bytes": pdf_bytes,
+            })
         );
         io::stdout().flush().expect("standard output is open");
     }
@@ -148,7 +159,7 @@ fn triangles() -> Subject {
 
 /// The city in twenty thousand dots.
 fn dots() -> Subject {
-    let screen = Some(Screen::Dots { pitch: 1.2, angle: 45.0 });
+    let screen = Some(Screen::Dots { pitch: 0.75, angle: 45.0, shape: DotShape::Round });
     Subject { screen, ..city() }
 }
 

@@ -2,13 +2,13 @@
 
 use glam::{DMat3, DQuat, DVec2, DVec3, EulerRot, dvec2, dvec3};
 use katachi::{
-    geom::{FaceRef, Placement, PolyMesh},
-    kernel::brep::primitive::{cuboid, sphere},
+    geom::{CurvedGrid, FaceRef, Placement, PolyMesh, Tolerance, trig::cos_deg},
+    kernel::brep::primitive::{cuboid, sphere, torus},
     output::{
         drawing::{Camera, Scene, View, Window},
         halftone::{
-            Frame, Light, Picture, Screen, Sun, ground_shadow, levels, lit_parts, overstrike,
-            picture, png,
+            DotShape, Frame, Light, Mark, Picture, Screen, Sun, ground_shadow, guided, levels,
+            lit_parts, overstrike, picture, png,
         },
         sheet::Lettering,
     },
@@ -247,7 +247,11 @@ fn blocks_that_touch_do_not_leak() {
 fn screens_keep_the_mean_tone() {
     let frame = frame(20.0, 400.0);
     let screens = [
-        Screen::Dots { pitch: 1.0, angle: 45.0 },
+        Screen::Dots { pitch: 1.0, angle: 45.0, shape: DotShape::Round },
+        Screen::Dots { pitch: 1.0, angle: 20.0, shape: DotShape::Ellipse },
+        Screen::Dots { pitch: 1.0, angle: 45.0, shape: DotShape::Square },
+        Screen::Dots { pitch: 1.0, angle: 10.0, shape: DotShape::Diamond },
+        Screen::Dots { pitch: 1.0, angle: 30.0, shape: DotShape::Line },
         Screen::Lines { pitch: 0.8, angle: 20.0 },
         Screen::Hatch { pitch: 0.5, angle: 30.0 },
         Screen::Stipple { pitch: 0.5, seed: 1 },
@@ -267,6 +271,65 @@ fn screens_keep_the_mean_tone() {
             let mean = tones.iter().sum::<f64>() / tones.len() as f64;
             assert!((mean - tone).abs() < 0.01, "{screen:?}: {mean} for {tone}");
         }
+    }
+}
+
+/// A ring, a ball and a wavy surface in strokes along their parameter lines: as dark as they should be all over, no stroke
+/// twice, and little way between strokes.
+#[test]
+fn strokes_follow_round_faces() {
+    let (ring, ball) = (torus(18.0, 6.0, 120, 60), sphere(9.0, 80));
+    let rows: Vec<Vec<DVec3>> = (0..40)
+        .map(|u| {
+            let at = |v: i32| {
+                let (x, y) = (f64::from(u) - 20.0, f64::from(v) - 20.0);
+                dvec3(x, y, 3.0 * cos_deg(12.0 * x) * cos_deg(9.0 * y))
+            };
+            (0..40).map(at).collect()
+        })
+        .collect();
+    let grid = CurvedGrid::new(&rows, false, false).expect("a grid");
+    let wavy = grid.mesh();
+    let sun = Sun::new(dvec3(-1.0, -1.0, 1.5), 0.1).expect("a direction");
+    let light = Light { suns: vec![sun], ground: None };
+    let camera = Camera::parallel(dvec3(0.4, -1.0, 1.2)).expect("a direction");
+    let frame = frame(26.0, 520.0);
+    for (mesh, grids) in
+        [(ring.mesh(), vec![]), (ball.mesh(), vec![]), (&wavy, vec![(0u32, &grid)])]
+    {
+        let scene = Scene::of([mesh]);
+        let (tones, guide) = guided(&scene, (&camera, &light, &frame), &grids, Tolerance::DEFAULT);
+        let screen = Screen::Hatch { pitch: 0.4, angle: 45.0 };
+        let ink = screen.ink_along(&tones, Some(&guide)).expect("a coarse screen");
+        let mean = |picture: &Picture| {
+            let tones = picture.tones();
+            tones.iter().map(|t| f64::from(*t)).sum::<f64>() / tones.len() as f64
+        };
+        let dark = [&tones, &ink.picture()].map(|picture| 1.0 - mean(picture));
+        assert!((dark[0] - dark[1]).abs() < 0.03 * dark[0], "{dark:?}");
+        let strokes: Vec<&Vec<DVec2>> = ink
+            .marks
+            .iter()
+            .map(|mark| match mark {
+                Mark::Stroke { points, .. } => points,
+                other => panic!("{other:?}"),
+            })
+            .collect();
+        assert!(strokes.iter().any(|points| points.len() > 3), "none bends");
+        let mut ends: Vec<[u64; 4]> = strokes
+            .iter()
+            .map(|s| {
+                let mut ends = [s[0], s[s.len() - 1]].map(|p| [p.x.to_bits(), p.y.to_bits()]);
+                ends.sort_unstable();
+                [ends[0][0], ends[0][1], ends[1][0], ends[1][1]]
+            })
+            .collect();
+        ends.sort_unstable();
+        ends.dedup();
+        assert_eq!(ends.len(), strokes.len());
+        let way: f64 =
+            strokes.windows(2).map(|s| s[0][s[0].len() - 1].distance(s[1][0])).sum::<f64>();
+        assert!(way / (strokes.len() as f64) < 5.0 * 0.4, "{way} mm between {}", strokes.len());
     }
 }
 

@@ -145,3 +145,151 @@ fn a_mesh_is_drawn_ad_hoc() {
         assert_eq!(output.status.code(), Some(2), "{bad:?}");
     }
 }
+
+/// A sheet with a half-tone of each kind, one at another scale.
+const HALFTONES: &str = "
+part ball = sphere(10)
+front = ball.view(from = FRONT)
+fn lit(screen) = ball.shade(from = RIGHT, shadow = NONE, screen = screen, dpi = 127)
+dotted = lit(dots(pitch = 1mm))
+shade hero = dotted
+sheet mixed = page(A4)
+    .place(front, at = [100, 250]).place(dotted, beside = front)
+    .place(dotted, at = [60, 200], scale = 2).place(lit(hatch()), at = [120, 200])
+    .place(lit(GREY), at = [160, 200]).place(lit(overstrike()), at = [60, 120])
+";
+
+#[test]
+fn half_tones_stand_on_pages() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    fs::write(folder.path().join("m.kata"), HALFTONES).expect("writable");
+    let made = |format: &str, jobs: &str| {
+        let build = ["build", "m.kata", "--format", format, "-o", jobs, "-j", jobs];
+        let output = run(folder.path(), &build);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let read = |name: &str| {
+            let file = folder.path().join(jobs).join(format!("{name}.{format}"));
+            String::from_utf8_lossy(&fs::read(file).expect("written")).into_owned()
+        };
+        [read("mixed"), read("hero")]
+    };
+    for format in ["svg", "pdf", "dxf"] {
+        assert!(made(format, "1") == made(format, "2"), "{format}");
+    }
+    let [mixed, hero] = made("svg", "1");
+    let tree = usvg::Tree::from_str(&mixed, &usvg::Options::default()).expect("an SVG");
+    assert!(!tree.clip_paths().is_empty());
+    for class in ["tone", "dots", "strokes", "areas"] {
+        assert!(mixed.contains(&format!("class=\"{class}\"")), "{class}");
+    }
+    assert_eq!(mixed.matches("<image").count(), 1);
+    // Twice as large it has four times as many dots of the same pitch.
+    let (one, all) = (hero.matches("<circle").count(), mixed.matches("<circle").count());
+    assert!((all as f64 / one as f64 - 5.0).abs() < 0.2, "{all} of {one}");
+    assert!(hero.contains("width=\"21.2mm\""), "{}", &hero[..300]);
+    let [mixed, _] = made("pdf", "1");
+    assert_eq!(mixed.matches("/Subtype /Image").count(), 1);
+    let [mixed, hero] = made("dxf", "1");
+    // The outline of the ball in its view is a circle too.
+    assert!(mixed.matches("CIRCLE").count() == all + 1 && hero.matches("CIRCLE").count() == one);
+    assert!(mixed.contains("picture of pixels"));
+}
+
+/// The length of the straight lines in a layer of an SVG file.
+fn length_of(svg: &str, layer: &str) -> f64 {
+    let start = svg.find(&format!("<g class=\"{layer}\"")).expect("the layer is there");
+    let group = svg[start..].split("</g>").next().unwrap_or_default();
+    let data = group.split(" d=\"").skip(1).filter_map(|rest| rest.split('"').next());
+    data.map(|data| {
+        let points: Vec<Vec<f64>> = data
+            .split(['M', 'L', 'Z'])
+            .filter(|point| !point.is_empty())
+            .map(|point| point.split(' ').map(|x| x.parse().expect("a number")).collect())
+            .collect();
+        let mut ends: Vec<_> = points.windows(2).map(|p| (&p[0], &p[1])).collect();
+        if data.ends_with('Z') {
+            ends.push((&points[points.len() - 1], &points[0]));
+        }
+        ends.iter().map(|(p, q)| libm::hypot(p[0] - q[0], p[1] - q[1])).sum::<f64>()
+    })
+    .sum()
+}
+
+#[test]
+fn shadows_in_views_are_outlined_and_filled() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let model = "
+part cube = box(10, 10, 10)
+over = box(10, 10, 2).move(z = 20)
+view on_ground = cube.view(from = TOP, light = sun([-1, 0, 1]), shadow = ground())
+view on_plate = [box(60, 60, 2).move(z = -2), cube].view(from = TOP, light = sun([-1, 0, 1]))
+view under = [cube, over].view(from = TOP, hidden = DASHED, light = sun([0, 0, 1]), style = { hatch_pitch = 1mm })
+";
+    fs::write(folder.path().join("m.kata"), model).expect("writable");
+    let output = run(folder.path(), &["build", "m.kata"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let svg = |name: &str| {
+        fs::read_to_string(folder.path().join(format!("out/{name}.svg"))).expect("written")
+    };
+    // Three sides beside the cube, and the square in lines 1.5 mm apart.
+    for name in ["on_ground", "on_plate"] {
+        let length = length_of(&svg(name), "shadow");
+        assert!((length - 30.0 - 100.0 / 1.5).abs() < 3.0, "{name}: {length}");
+    }
+    assert!(!svg("under").contains("class=\"shadow\""), "hidden shadows are not drawn");
+}
+
+#[test]
+fn figures_on_faces_are_lines_over_tones() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let model = "
+die = box(10, 10, 10).draw_on(TOP, circle(3)).draw_on(BOTTOM, circle(2))
+shade lit = die.shade(from = TOP, shadow = NONE, light = sun([0, 0, 1]))
+export \"lit.svg\" = lit
+export \"lit.png\" = lit
+";
+    fs::write(folder.path().join("m.kata"), model).expect("writable");
+    let output = run(folder.path(), &["build", "m.kata"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let svg = fs::read_to_string(folder.path().join("out/lit.svg")).expect("written");
+    let pattern = svg.split("class=\"pattern\"").nth(1).expect("a layer");
+    // One circle of two or three arcs, and not the one below.
+    assert!(pattern.contains("A3 3 ") && !pattern.contains("A2 2 "), "{pattern}");
+    assert!(!svg.contains("class=\"visible\""));
+    // The same in pixels: all white but for the circle.
+    let file = fs::File::open(folder.path().join("out/lit.png")).expect("written");
+    let mut reader =
+        png::Decoder::new(std::io::BufReader::new(file)).read_info().expect("a picture");
+    let mut samples = vec![0; reader.output_buffer_size().expect("small")];
+    reader.next_frame(&mut samples).expect("pixels");
+    assert!(samples.iter().any(|&s| s < 50) && samples[samples.len() / 2] > 200);
+}
+
+#[test]
+fn pictures_are_printed_in_characters() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let part = "part ball = sphere(10)\n";
+    let shade = "shade top = box(10, 20, 5).shade(from = TOP, light = sun([0, 1, 1]))\n";
+    fs::write(folder.path().join("part.kata"), part).expect("writable");
+    fs::write(folder.path().join("shade.kata"), format!("{part}{shade}")).expect("writable");
+    fs::write(folder.path().join("none.kata"), "x = 1\n").expect("writable");
+    let printed = |arguments: &[&str]| {
+        let output = run(folder.path(), arguments);
+        (output.status.success(), String::from_utf8_lossy(&output.stdout).into_owned())
+    };
+    let (ok, ball) = printed(&["view", "part.kata", "--text", "--columns", "40"]);
+    let widths = || ball.lines().map(|line| line.chars().count());
+    assert!(ok && widths().max() > Some(34) && widths().max() <= Some(40), "{ball}");
+    // As high as wide: characters are twice as high.
+    assert!((19..=20).contains(&ball.lines().count()), "{ball}");
+    let mut signs: Vec<char> = ball.chars().filter(|c| *c != '\n').collect();
+    signs.sort_unstable();
+    signs.dedup();
+    assert!((15..=20).contains(&signs.len()), "{signs:?}");
+    let (ok, shade) = printed(&["view", "shade.kata", "--text", "--columns", "30"]);
+    // A half-tone comes before parts: a box seen from above, twice as long as wide.
+    assert!(ok && shade.lines().count() > 24, "{shade}");
+    assert!(!printed(&["view", "none.kata", "--text"]).0);
+    assert!(!printed(&["view", "part.kata", "--text", "-o", "x.svg"]).0);
+    assert!(!printed(&["view", "part.kata", "--columns", "40"]).0);
+}

@@ -52,7 +52,7 @@ pub struct Model {
     /// Set a parameter, or those of a JSON file
     #[arg(short = 'D', value_name = "NAME=VALUE|@FILE")]
     pub define: Vec<String>,
-    /// Project root [default: nearest folder upwards with katachi.toml]
+    /// Project root [default: nearest with katachi.toml]
     #[arg(long, value_name = "DIR")]
     pub root: Option<PathBuf>,
 }
@@ -60,7 +60,7 @@ pub struct Model {
 /// How solids are made.
 #[derive(Debug, Args)]
 pub struct Making {
-    /// Largest chord error, such as 0.02mm [default: the model's, else 0.05mm]
+    /// Chord error [default: the model's, else 0.05mm]
     #[arg(long, value_name = "LENGTH", value_parser = tolerance)]
     pub tolerance: Option<Tolerance>,
     /// Number of threads [default: one for each core]
@@ -143,7 +143,7 @@ pub struct View {
     /// Only this part (may be repeated)
     #[arg(short, long = "part", value_name = "NAME")]
     pub part: Vec<String>,
-    /// A side such as TOP, or X,Y,Z towards the eye
+    /// A side, or X,Y,Z towards the eye
     #[arg(long, value_name = "SIDE", default_value = "ISO", allow_hyphen_values = true)]
     pub from: String,
     /// Perspective from here in place of --from
@@ -152,9 +152,16 @@ pub struct View {
     /// What the eye looks at [default: 0,0,0]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub target: Option<String>,
-    /// Hidden lines: off, dashed or depth:K
+    /// Hidden lines: off, dashed, depth:K
     #[arg(long, value_name = "HOW", default_value = "off")]
     pub hidden: String,
+    /// Print the model, or its half-tone, as characters
+    #[arg(long, conflicts_with = "output")]
+    pub text: bool,
+    /// How many in a row [default: those of the terminal]
+    #[arg(long, value_name = "N", requires = "text")]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub columns: Option<u32>,
     /// The .svg, .pdf or .dxf [default: out/MODEL.svg]
     #[arg(short, value_name = "FILE")]
     pub output: Option<PathBuf>,

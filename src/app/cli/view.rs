@@ -1,4 +1,4 @@
-//! `katachi view`: one drawing of any model or mesh.
+//! `katachi view`: one drawing of any model or mesh, or a picture in characters.
 
 use std::{io, io::Write, path::Path};
 
@@ -30,6 +30,13 @@ pub fn run(arguments: &args::View, style: Style) -> io::Result<Exit> {
         Ok(compiled) => compiled,
         Err(diagnostics) => return desk.report(&session, &diagnostics),
     };
+    if arguments.text {
+        let size = characters(arguments.columns);
+        let text = model.preview(&arguments.part, &sight, size, &mut diagnostics);
+        desk.watch().end_bar();
+        write!(io::stdout().lock(), "{}", text.unwrap_or_default())?;
+        return desk.report(&session, &diagnostics);
+    }
     let sketch = model.sketch(&arguments.part, &sight, (&path, format), &mut diagnostics);
     let mut written = false;
     diagnostics.extend(model.build(sketch.as_slice(), &mut |artifact, bytes| {
@@ -43,6 +50,21 @@ pub fn run(arguments: &args::View, style: Style) -> io::Result<Exit> {
     }
     desk.report(&session, &diagnostics)
 }
+
+/// Columns and rows of characters: as many as are asked for, else those of the terminal, one row left free, else 80
+/// by 40. So many columns have as many rows as they need.
+fn characters(columns: Option<u32>) -> [u32; 2] {
+    match (columns, console::Term::stdout().size_checked()) {
+        (Some(columns), _) => [columns, MOST_ROWS],
+        (None, Some((rows, columns))) => {
+            [columns.max(1), rows.saturating_sub(1).max(1)].map(u32::from)
+        }
+        (None, None) => [80, 40],
+    }
+}
+
+/// Rows of characters at most.
+const MOST_ROWS: u32 = 10_000;
 
 /// The file to write: what `-o` names, else `out/<stem>.svg`.
 fn target(arguments: &args::View) -> Result<(String, Format), String> {

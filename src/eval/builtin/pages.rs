@@ -14,8 +14,8 @@ use crate::{
         value::{Symbol, Value},
     },
     shape::{
-        PageSpec, ViewSpec,
-        drawing::{Place, Placed, Position, TitleSpec},
+        PageSpec,
+        drawing::{Place, Placed, Position, Subject, TitleSpec},
     },
 };
 
@@ -92,10 +92,11 @@ fn changed(
     Ok(Value::Page(Arc::new(page)))
 }
 
-fn drawing<'a>(args: &'a Args, i: usize) -> Outcome<&'a Arc<ViewSpec>> {
+fn subject(args: &Args, i: usize) -> Outcome<Subject> {
     match args.value(i) {
-        Value::Drawing(view) => Ok(view),
-        _ => args.wrong(i, "a drawing"),
+        Value::Drawing(view) => Ok(Subject::View(view.clone())),
+        Value::Picture(shade) => Ok(Subject::Shade(shade.clone())),
+        _ => args.wrong(i, "a drawing or a picture"),
     }
 }
 
@@ -108,8 +109,8 @@ fn place_at(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
 /// `page, view, beside, gap`.
 fn place_beside(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
     let Value::Page(page) = args.value(0) else { return args.wrong(0, "a page") };
-    let other = drawing(args, 2)?;
-    let Some(other) = page.views.iter().position(|placed| placed.view == *other) else {
+    let other = subject(args, 2)?;
+    let Some(other) = page.views.iter().position(|placed| placed.subject == other) else {
         let words = "the view beside which this one is placed is not on the page";
         let error = Diagnostic::error(Code::BadCall, words).label(args.span(2), "");
         return Err(error.help("place that one before").into());
@@ -123,13 +124,13 @@ fn place(
     position: Position,
     scale: usize,
 ) -> Outcome<Value> {
-    let view = drawing(args, 1)?.clone();
+    let subject = subject(args, 1)?;
     let scale = match position {
         Position::At(_) if args.given(scale) => Some(args.positive(scale)?),
         _ => None,
     };
     let place = Place(evaluator.shown_at(args.span(1)));
-    changed(evaluator, args, |page| page.views.push(Placed { view, position, scale, place }))
+    changed(evaluator, args, |page| page.views.push(Placed { subject, position, scale, place }))
 }
 
 /// `page, title, fields`.

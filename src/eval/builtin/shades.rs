@@ -17,17 +17,15 @@ use crate::{
         types::shown,
         value::{Record, Symbol, Value},
     },
+    geom::{
+        DotShape, Screen,
+        light::{HORIZON, SUNS},
+    },
     shape::drawing::{Place, StyleSpec},
     shape::halftone::{ScreenSpec, ShadeSpec, SunSpec},
 };
 
 pub const TABLE: &[(&str, Native)] = &[("shade.of", shade), ("shade.sun", sun)];
-
-/// Lights of one picture at most.
-const SUNS: usize = 8;
-
-/// Below this sine of its height a sun is at the horizon: shadows are 10,000 times as long as what casts them.
-const HORIZON: f64 = 1e-4;
 
 /// `shapes, from, eye, target, fov, window, light, shadow, screen, lines, dpi`.
 fn shade(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
@@ -38,14 +36,14 @@ fn shade(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
         return args.fail(0, Code::WrongKind, words);
     }
     let target = args.point(3)?;
-    let suns = suns(args)?;
+    let suns = suns(args, 6)?;
     let spec = ShadeSpec {
         shapes: subjects.shapes,
         surfaces: subjects.surfaces,
         projection: projection(args, target)?,
         target,
         window: window(args)?,
-        ground: ground(args, &suns)?,
+        ground: ground(args, (6, 7), &suns)?,
         suns,
         screen: screen(args)?,
         lines: lines(args)?,
@@ -88,20 +86,20 @@ fn sun(_: &mut Evaluator, args: &Args) -> Outcome<Value> {
 }
 
 /// A light or a list of them.
-fn suns(args: &Args) -> Outcome<Vec<SunSpec>> {
-    let given: Vec<&Value> = match args.value(6) {
+pub(super) fn suns(args: &Args, i: usize) -> Outcome<Vec<SunSpec>> {
+    let given: Vec<&Value> = match args.value(i) {
         Value::List(list) => list.iter().collect(),
         one => vec![one],
     };
     if given.is_empty() || given.len() > SUNS {
         let words = format!("a picture has 1 to {SUNS} lights, got {}", given.len());
-        return args.fail(6, Code::OutOfRange, words);
+        return args.fail(i, Code::OutOfRange, words);
     }
     let read = |value: &&Value| match sun_of(value) {
         Some(sun) => Ok(sun),
         None => {
             let words = format!("`light` is sun(d) or a list of such, got {}", shown(value));
-            args.fail(6, Code::WrongKind, words)
+            args.fail(i, Code::WrongKind, words)
         }
     };
     given.iter().map(read).collect()
@@ -120,30 +118,34 @@ fn sun_of(value: &Value) -> Option<SunSpec> {
 }
 
 /// `NONE`, or `ground(z)`: AUTO is the ground at 0 if the suns are above it.
-fn ground(args: &Args, suns: &[SunSpec]) -> Outcome<Option<f64>> {
+pub(super) fn ground(
+    args: &Args,
+    (light, shadow): (usize, usize),
+    suns: &[SunSpec],
+) -> Outcome<Option<f64>> {
     let low = suns.iter().find(|sun| sun.toward.normalize().z <= HORIZON);
-    match args.value(7) {
+    match args.value(shadow) {
         Value::Symbol(Symbol::None) => return Ok(None),
         Value::Symbol(Symbol::Auto) => return Ok(Some(0.0).filter(|_| low.is_none())),
         Value::Record(record) => {
             if let Some(Value::Number(z, _)) = record.get("ground") {
                 return match low {
                     None => Ok(Some(*z)),
-                    Some(sun) => no_shadow(args, sun),
+                    Some(sun) => no_shadow(args, light, sun),
                 };
             }
         }
         _ => {}
     }
-    let words = format!("`shadow` is ground(z) or NONE, got {}", shown(args.value(7)));
-    args.fail(7, Code::WrongKind, words)
+    let words = format!("`shadow` is ground(z) or NONE, got {}", shown(args.value(shadow)));
+    args.fail(shadow, Code::WrongKind, words)
 }
 
-fn no_shadow(args: &Args, sun: &SunSpec) -> Outcome<Option<f64>> {
+fn no_shadow(args: &Args, light: usize, sun: &SunSpec) -> Outcome<Option<f64>> {
     let how = if sun.toward.normalize().z < -HORIZON { "from below" } else { "parallel to" };
     let d = Value::list(sun.toward.to_array().map(Value::bare).to_vec());
     let words = format!("the light from {d} comes {how} the ground; it casts no shadow there");
-    let error = Diagnostic::error(Code::Degenerate, words).label(args.span(6), "");
+    let error = Diagnostic::error(Code::Degenerate, words).label(args.span(light), "");
     let help =
         "give the sun a direction with a z above 0, or leave the ground out: `shadow = NONE`";
     Err(error.help(help).into())
@@ -153,7 +155,15 @@ fn no_shadow(args: &Args, sun: &SunSpec) -> Outcome<Option<f64>> {
 fn screen(args: &Args) -> Outcome<ScreenSpec> {
     let found = match args.value(8) {
         Value::Symbol(Symbol::Grey) => Some(ScreenSpec::Grey),
-        Value::Record(record) => screen_of(record),
+        Value::Record(record) => {
+            if let Some(Value::Number(pitch, _)) = record.get("pitch")
+                && *pitch <= 0.0
+            {
+                let words = format!("the pitch of the screen must be greater than 0, got {pitch}");
+                return args.fail(8, Code::Degenerate, words);
+            }
+            screen_of(record)
+        }
         _ => None,
     };
     if let Some(screen) = found {
@@ -175,16 +185,31 @@ fn screen_of(record: &Record) -> Option<ScreenSpec> {
     if &***name == "overstrike" {
         return number("levels").map(|levels| ScreenSpec::Overstrike { levels: levels as u32 });
     }
-    let pitch = number("pitch").filter(|pitch| *pitch > 0.0)?;
-    Some(match &***name {
-        "dots" => ScreenSpec::Dots { pitch, angle: number("angle")? },
-        "lines" => ScreenSpec::Lines { pitch, angle: number("angle")? },
-        "hatch" => ScreenSpec::Hatch { pitch, angle: number("angle")? },
-        "stipple" => ScreenSpec::Stipple { pitch, seed: number("seed")? as u64 },
+    let pitch = number("pitch")?;
+    Some(ScreenSpec::Ink(match &***name {
+        "dots" => {
+            let shape = dot_shape(record.get("shape"))?;
+            Screen::Dots { pitch, angle: number("angle")?, shape }
+        }
+        "lines" => Screen::Lines { pitch, angle: number("angle")? },
+        "hatch" => Screen::Hatch { pitch, angle: number("angle")? },
+        "stipple" => Screen::Stipple { pitch, seed: number("seed")? as u64 },
         "diffusion" => {
             let atkinson = matches!(record.get("atkinson"), Some(Value::Bool(true)));
-            ScreenSpec::Diffusion { side: pitch, atkinson }
+            Screen::Diffusion { side: pitch, atkinson }
         }
+        _ => return None,
+    }))
+}
+
+fn dot_shape(value: Option<&Value>) -> Option<DotShape> {
+    let Some(Value::Symbol(symbol)) = value else { return None };
+    Some(match symbol {
+        Symbol::Round => DotShape::Round,
+        Symbol::Ellipse => DotShape::Ellipse,
+        Symbol::Square => DotShape::Square,
+        Symbol::Diamond => DotShape::Diamond,
+        Symbol::Line => DotShape::Line,
         _ => return None,
     })
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::{Args, Native, coordinates, flat, placing::read_color};
+use super::{Args, Native, coordinates, flat, placing::read_color, shades};
 use crate::{
     base::{Code, Diagnostic},
     eval::{
@@ -19,9 +19,10 @@ use crate::{
     shape::{
         CurveSpec, ShapeId, ViewSpec,
         drawing::{
-            CutPlane, CuttingSpec, DimSpec, Measured, PenName, PenSpec, Place, Projection,
-            StyleSpec,
+            CastSpec, CutPlane, CuttingSpec, DimSpec, Measured, PenName, PenSpec, Place,
+            Projection, StyleSpec,
         },
+        halftone::SunSpec,
     },
 };
 
@@ -39,7 +40,7 @@ pub const TABLE: &[(&str, Native)] = &[
     ("view.caption", caption),
 ];
 
-/// `shapes, from, eye, target, fov, window, hidden, style, method`.
+/// `shapes, from, eye, target, fov, window, hidden, style, method, light, shadow`.
 fn view(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
     let subjects = subjects(evaluator, args)?;
     let target = args.point(3)?;
@@ -50,9 +51,26 @@ fn view(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
         hidden: hidden(args, 6)?,
         method: method(args)?,
         style: style(args, 7)?,
+        shadow: cast(args)?,
         ..plain(evaluator, args, subjects, projection)
     };
     Ok(Value::Drawing(Arc::new(spec)))
+}
+
+/// Shadows of one sun, if a light or the ground is given.
+fn cast(args: &Args) -> Outcome<Option<CastSpec>> {
+    if !args.given(9) && !args.given(10) {
+        return Ok(None);
+    }
+    let suns = match args.given(9) {
+        true => shades::suns(args, 9)?,
+        false => vec![SunSpec::DEFAULT],
+    };
+    let [sun] = suns[..] else {
+        return args.fail(9, Code::OutOfRange, "the shadows of a view are those of one sun");
+    };
+    let ground = shades::ground(args, (9, 10), &suns)?;
+    Ok(Some(CastSpec { toward: sun.toward, ground }))
 }
 
 /// A view of subjects with nothing else said of it.
@@ -73,6 +91,7 @@ fn plain(
         hidden: Hidden::Off,
         method: Method::Auto,
         style: StyleSpec::default(),
+        shadow: None,
         section: None,
         center_lines: false,
         dims: vec![],

@@ -75,6 +75,16 @@ symbols! {
     Count = "COUNT",
     /// Tones as pixels.
     Grey = "GREY",
+    /// Dots that are discs.
+    Round = "ROUND",
+    /// Dots that are ellipses.
+    Ellipse = "ELLIPSE",
+    /// Dots that are squares.
+    Square = "SQUARE",
+    /// Dots that are squares on their corners.
+    Diamond = "DIAMOND",
+    /// Dots that are bars.
+    Line = "LINE",
     /// Hidden lines by clipping.
     Clip = "CLIP",
     /// The paper size A0.

@@ -45,6 +45,8 @@ pub enum Kind {
     Upper,
     /// A grid line of a surface, where its lower side is seen.
     Lower,
+    /// The outline of a shadow, and lines in it.
+    Shadow,
     /// A line in space.
     Free,
     /// Where a cutting plane runs.

@@ -57,7 +57,7 @@ pub(super) fn diffusion(tones: &Average, side: f64, filter: Filter) -> Vec<Mark>
             column += run.len();
             if run[0] {
                 let corners = [(x[0], top - side), (x[1], top - side), (x[1], top), (x[0], top)];
-                marks.push(Mark::Area(corners.map(|(x, y)| dvec2(x, y)).to_vec()));
+                marks.push(Mark::Area(vec![corners.map(|(x, y)| dvec2(x, y)).to_vec()]));
             }
         }
     }

@@ -1,23 +1,25 @@
-//! What half-tones are written as.
+//! Half-tones made, and what they are written as.
+
+use std::sync::Arc;
 
 use glam::DVec2;
 
 use super::{
-    ink::{Ink, Mark},
+    ink::{Ink, Mark, line_outlines},
     overstrike::Overstrike,
     picture::Picture,
-    png::png,
-    vector::{svg, svg_of_picture},
+    png::{pixels, png},
 };
-use crate::output::drawing::{Class, Drawing, Path, Segment};
+use crate::output::{
+    drawing::{Path, Segment},
+    sheet::{self, Layer, Print, Style, Tone},
+};
 
-/// The formats of pictures.
+/// The formats that hold pictures only. As drawings they are written from their [`Print`].
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum PictureFormat {
     /// Pixels.
     Png,
-    /// Shapes of ink in millimetres; pixels where there are none.
-    Svg,
     /// Text to be struck line by line, several times.
     Txt,
 }
@@ -27,8 +29,10 @@ pub enum PictureFormat {
 pub struct Halftone {
     /// What its tones are made of.
     pub tones: Tones,
-    /// The lines.
-    pub lines: Vec<Mark>,
+    /// The lines, millimetres on paper.
+    pub lines: Vec<sheet::Ink>,
+    /// The pens of the lines.
+    pub style: Style,
 }
 
 /// What the tones of a picture are made of.
@@ -50,7 +54,7 @@ impl PictureFormat {
     /// assert_eq!(PictureFormat::from_name("PNG"), Some(PictureFormat::Png));
     /// ```
     pub fn from_name(name: &str) -> Option<PictureFormat> {
-        let all = [PictureFormat::Png, PictureFormat::Svg, PictureFormat::Txt];
+        let all = [PictureFormat::Png, PictureFormat::Txt];
         all.into_iter().find(|format| name.eq_ignore_ascii_case(format.name()))
     }
 
@@ -58,29 +62,77 @@ impl PictureFormat {
     pub fn name(self) -> &'static str {
         match self {
             PictureFormat::Png => "png",
-            PictureFormat::Svg => "svg",
             PictureFormat::Txt => "txt",
         }
     }
 
-    /// The bytes of a picture with a title; `None` where only struck signs are text.
-    pub fn write(self, halftone: &Halftone, title: &str) -> Option<Vec<u8>> {
-        let Halftone { tones, lines } = halftone;
-        Some(match (self, tones) {
-            (PictureFormat::Txt, Tones::Text(struck)) => struck.text().into_bytes(),
-            (PictureFormat::Txt, _) => return None,
-            (PictureFormat::Png, Tones::Pixels(picture)) => png(&picture.with_lines(lines)),
-            (PictureFormat::Svg, Tones::Pixels(picture)) => {
-                svg_of_picture(picture, lines, title).into_bytes()
-            }
-            (PictureFormat::Png, Tones::Ink(ink) | Tones::Text(Overstrike { ink, .. })) => {
-                png(&ink.with(lines).picture())
-            }
-            (PictureFormat::Svg, Tones::Ink(ink) | Tones::Text(Overstrike { ink, .. })) => {
-                svg(&ink.with(lines), title).into_bytes()
-            }
-        })
+    /// The bytes of a picture; `None` where only struck signs are text.
+    pub fn write(self, halftone: &Halftone) -> Option<Vec<u8>> {
+        match (self, &halftone.tones) {
+            (PictureFormat::Txt, Tones::Text(struck)) => Some(struck.text().into_bytes()),
+            (PictureFormat::Txt, _) => None,
+            (PictureFormat::Png, _) => Some(png(&halftone.picture())),
+        }
     }
+}
+
+impl Halftone {
+    /// Tones and lines as ink for a page.
+    pub fn print(&self) -> Print {
+        let (tones, frame) = match &self.tones {
+            Tones::Pixels(picture) => {
+                let (window, pixels) = (picture.frame.window, Arc::new(pixels(picture)));
+                let tone = Tone::Pixels { min: window.min, max: window.max, pixels };
+                (vec![tone], picture.frame)
+            }
+            Tones::Ink(ink) | Tones::Text(Overstrike { ink, .. }) => (tones(&ink.marks), ink.frame),
+        };
+        let ink =
+            |tone| sheet::Ink { layer: Layer::Tone, mark: sheet::Mark::Tone(tone), part: None };
+        let inks = tones.into_iter().map(ink).chain(self.lines.iter().cloned()).collect();
+        Print { inks, style: self.style.clone(), min: frame.window.min, max: frame.window.max }
+    }
+
+    /// Tones and lines as pixels.
+    pub fn picture(&self) -> Picture {
+        let outline = |ink: &sheet::Ink| {
+            let sheet::Mark::Line(path) = &ink.mark else { return vec![] };
+            line_outlines(&points(path), self.style.pen(ink.layer).width)
+        };
+        let lines: Vec<Vec<DVec2>> = self.lines.iter().flat_map(outline).collect();
+        match &self.tones {
+            Tones::Pixels(picture) => picture.covered_by(&lines),
+            Tones::Ink(ink) | Tones::Text(Overstrike { ink, .. }) => {
+                ink.picture().covered_by(&lines)
+            }
+        }
+    }
+}
+
+/// Marks sorted by what they are; strokes have one pen.
+fn tones(marks: &[Mark]) -> Vec<Tone> {
+    let (mut dots, mut areas, mut strokes, mut pen) = (vec![], vec![], vec![], 0.0);
+    for mark in marks {
+        match mark {
+            Mark::Dot { center, radius } => dots.push((*center, *radius)),
+            Mark::Area(rings) => areas.push(rings.clone()),
+            Mark::Stroke { points, width } => {
+                strokes.push(points.clone());
+                pen = *width;
+            }
+        }
+    }
+    let mut tones = vec![];
+    if !dots.is_empty() {
+        tones.push(Tone::Dots(dots));
+    }
+    if !areas.is_empty() {
+        tones.push(Tone::Areas(areas));
+    }
+    if !strokes.is_empty() {
+        tones.push(Tone::Strokes { strokes, width: pen });
+    }
+    tones
 }
 
 /// Chords of a curved line to a millimetre.
@@ -88,12 +140,6 @@ const CHORDS: f64 = 4.0;
 
 /// Chords of one curved piece of a line at least.
 const LEAST: f64 = 8.0;
-
-/// The visible lines of a drawing, drawn with a pen.
-pub fn lines(drawing: &Drawing, width: f64) -> Vec<Mark> {
-    let visible = drawing.lines.iter().filter(|line| line.class == Class::Visible);
-    visible.map(|line| Mark::Line { points: points(&line.path), width }).collect()
-}
 
 /// The corners of a path; chords of its curves.
 fn points(path: &Path) -> Vec<DVec2> {

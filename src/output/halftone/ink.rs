@@ -25,22 +25,13 @@ pub enum Mark {
         /// Its radius.
         radius: f64,
     },
-    /// A filled polygon.
-    Area(Vec<DVec2>),
-    /// A line through points with round ends and corners.
-    Line {
-        /// At least two.
-        points: Vec<DVec2>,
-        /// Width of the pen.
-        width: f64,
-    },
-    /// A straight stroke with blunt ends.
+    /// A filled area: an outer polygon, counter-clockwise, and those of holes, clockwise.
+    Area(Vec<Vec<DVec2>>),
+    /// A stroke with blunt ends that bends little from piece to piece.
     Stroke {
-        /// Where the pen is put down.
-        from: DVec2,
-        /// Where it is lifted.
-        to: DVec2,
-        /// Width of the pen.
+        /// From where the pen is put down to where it is lifted; at least two.
+        points: Vec<DVec2>,
+        /// Width of the pen, the same for all strokes of a picture.
         width: f64,
     },
 }
@@ -55,65 +46,56 @@ const LINES: usize = 8;
 const BAND: usize = 8;
 
 impl Mark {
-    /// Polygons that cover it together, all counter-clockwise but areas; those of dots have their area.
+    /// Polygons that cover it together; those of dots have their area.
     fn outlines(&self) -> Vec<Vec<DVec2>> {
-        let dot = |center: &DVec2, radius: f64| Mark::Dot { center: *center, radius }.outline();
         match self {
-            Mark::Line { points, width } => {
-                let piece = |ends: &[DVec2]| {
-                    Mark::Stroke { from: ends[0], to: ends[1], width: *width }.outline()
-                };
-                let joints = points.iter().map(|p| dot(p, width / 2.0));
-                points.windows(2).map(piece).chain(joints).collect()
-            }
-            other => vec![other.outline()],
-        }
-    }
-
-    /// The polygon of a mark that is one.
-    fn outline(&self) -> Vec<DVec2> {
-        match self {
-            Mark::Area(points) | Mark::Line { points, .. } => points.clone(),
-            Mark::Stroke { from, to, width } => {
-                let side = (to - from).normalize_or_zero().perp() * (width / 2.0);
-                vec![from - side, to - side, to + side, from + side]
-            }
-            Mark::Dot { center, radius } => {
-                let step = 360.0 / f64::from(CORNERS);
-                // A regular polygon has n / 2 r^2 sin(360 / n) for pi r^2.
-                let share = f64::from(CORNERS) / 2.0 * sin_deg(step) / std::f64::consts::PI;
-                let r = radius / share.sqrt();
-                let corner =
-                    |i: u32| DVec2::new(cos_deg(step * f64::from(i)), sin_deg(step * f64::from(i)));
-                (0..CORNERS).map(|i| center + corner(i) * r).collect()
-            }
+            Mark::Area(rings) => rings.clone(),
+            Mark::Stroke { points, width } => vec![ribbon(points, *width)],
+            Mark::Dot { center, radius } => vec![disc(*center, *radius)],
         }
     }
 }
 
-impl Ink {
-    /// The ink and more of it.
-    pub fn with(&self, marks: &[Mark]) -> Ink {
-        let marks = [&self.marks, marks].concat();
-        Ink { marks, ..*self }
-    }
+/// A polygon with the area of a disc.
+fn disc(center: DVec2, radius: f64) -> Vec<DVec2> {
+    let step = 360.0 / f64::from(CORNERS);
+    // A regular polygon has n / 2 r^2 sin(360 / n) for pi r^2.
+    let share = f64::from(CORNERS) / 2.0 * sin_deg(step) / std::f64::consts::PI;
+    let r = radius / share.sqrt();
+    let corner = |i: u32| DVec2::new(cos_deg(step * f64::from(i)), sin_deg(step * f64::from(i)));
+    (0..CORNERS).map(|i| center + corner(i) * r).collect()
+}
 
+/// What a pen covers along points, with blunt ends.
+fn ribbon(points: &[DVec2], width: f64) -> Vec<DVec2> {
+    let side = |i: usize| {
+        let (before, after) = (points[i.saturating_sub(1)], points[(i + 1).min(points.len() - 1)]);
+        (after - before).normalize_or_zero().perp() * (width / 2.0)
+    };
+    let right = (0..points.len()).map(|i| points[i] - side(i));
+    right.chain((0..points.len()).rev().map(|i| points[i] + side(i))).collect()
+}
+
+/// Polygons that a pen with a round tip covers along points.
+pub(super) fn line_outlines(points: &[DVec2], width: f64) -> Vec<Vec<DVec2>> {
+    let joints = points.iter().map(|p| disc(*p, width / 2.0));
+    points.windows(2).map(|ends| ribbon(ends, width)).chain(joints).collect()
+}
+
+impl Ink {
     /// The ink as pixels: a pixel is as dark as the part of it that is covered.
     pub fn picture(&self) -> Picture {
-        let covered = cover(&self.frame, &self.marks);
+        let outlines = self.marks.par_iter().flat_map_iter(Mark::outlines).collect();
+        let covered = cover(&self.frame, outlines);
         let pixels = covered.into_iter().map(|share| [1.0 - share; 3]).collect();
         Picture { frame: self.frame, pixels }
     }
 }
 
-/// The part of each pixel that shapes cover together.
-pub(super) fn cover(frame: &Frame, marks: &[Mark]) -> Vec<f32> {
+/// The part of each pixel that polygons on paper cover together.
+pub(super) fn cover(frame: &Frame, mut outlines: Vec<Vec<DVec2>>) -> Vec<f32> {
     let rows = frame.size[1] as usize;
-    let outlines: Vec<Vec<DVec2>> = marks
-        .par_iter()
-        .flat_map_iter(Mark::outlines)
-        .map(|outline| outline.into_iter().map(|p| frame.column_row(p)).collect())
-        .collect();
+    outlines.par_iter_mut().flatten().for_each(|p| *p = frame.column_row(*p));
     let mut bands: Vec<Vec<u32>> = vec![vec![]; rows.div_ceil(BAND)];
     for (number, outline) in (0u32..).zip(&outlines) {
         let heights = outline.iter().map(|p| (p.y, p.y));

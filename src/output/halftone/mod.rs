@@ -28,32 +28,44 @@
 //! before it, and shaded edges are polygons that drawings can use.
 
 mod average;
+mod cast;
+mod chart;
 mod diffusion;
 mod dots;
 mod facet;
 mod format;
+mod guide;
+mod hatch;
 mod ink;
 mod light;
 mod overstrike;
 mod picture;
 mod plate;
 mod png;
+mod preview;
 mod scan;
 mod screen;
 mod shadow;
 mod stipple;
 mod strokes;
 mod tone;
-mod vector;
+mod travel;
 
-pub use format::{Halftone, PictureFormat, Tones, lines};
+pub use cast::{CastShadow, cast_shadows};
+pub use format::{Halftone, PictureFormat, Tones};
+pub use guide::Guide;
 pub use ink::{Ink, Mark};
 pub use light::{LightError, Sun};
 pub use overstrike::{LEVELS, Level, Overstrike, levels, overstrike};
 pub use picture::{Frame, FrameError, PIXELS, Picture};
 pub use png::png;
-pub use screen::{CELLS, Screen, ScreenError};
-pub use vector::svg;
+pub use preview::{cell_dpi, cell_width, preview};
+pub use screen::{CELLS, ScreenError};
+
+pub use crate::geom::{
+    light::{HORIZON, SUNS},
+    screen::{DotShape, Screen},
+};
 
 use glam::DVec3;
 
@@ -64,6 +76,7 @@ use self::{
     tone::Toner,
 };
 use super::drawing::{Camera, Scene};
+use crate::geom::{CurvedGrid, Tolerance};
 
 /// What lights a scene.
 #[derive(Clone, PartialEq, Debug)]
@@ -73,9 +86,6 @@ pub struct Light {
     /// The height of the plane that shadows fall on, if there is one, mm.
     pub ground: Option<f64>,
 }
-
-/// Suns of one scene at most.
-pub const SUNS: usize = 8;
 
 /// A part of a face that a sun shines on.
 #[derive(Clone, PartialEq, Debug)]
@@ -133,12 +143,27 @@ pub fn ground_shadow(scene: &Scene, sun: &Sun, z: f64) -> Vec<Vec<DVec3>> {
     if sun.toward().z <= HORIZON { vec![] } else { Shadows::new(&facets, sun).on_ground(z) }
 }
 
-/// A sun stands above the horizon from this sine of its height on; shadows are 10,000 times as long as what casts them
-/// there.
-pub const HORIZON: f64 = 1e-4;
-
 /// The picture of a scene: strokes are left out.
 pub fn picture(scene: &Scene, camera: &Camera, light: &Light, frame: &Frame) -> Picture {
+    let facets = lit_facets(scene, light);
+    seen(&facets, camera, light, frame, false).0
+}
+
+/// The picture of a scene whose bodies of some numbers are grids, and a guide along the round faces in it. Faces are
+/// within the tolerance of their true surfaces.
+pub fn guided<'a>(
+    scene: &Scene,
+    (camera, light, frame): (&Camera, &Light, &Frame),
+    grids: &[(u32, &'a CurvedGrid)],
+    tolerance: Tolerance,
+) -> (Picture, Guide<'a>) {
+    let lit = lit_facets(scene, light);
+    let (picture, seen) = seen(&lit, camera, light, frame, true);
+    (picture, Guide::new(&lit.0, grids, seen, (camera, frame), tolerance))
+}
+
+/// The facets of a scene and where each sun shines on them, with the shadows on the ground.
+fn lit_facets(scene: &Scene, light: &Light) -> (Vec<Facet>, Vec<Vec<Lit>>) {
     let mut facets = facets(&scene.bodies);
     let mut lit: Vec<Vec<Lit>> = vec![vec![]; facets.len()];
     let mut grounds = vec![];
@@ -162,9 +187,28 @@ pub fn picture(scene: &Scene, camera: &Camera, light: &Light, frame: &Frame) -> 
         lit.push(suns.map(|other| if other == number { Lit::None } else { Lit::All }).collect());
         facets.push(Facet::ground(shadow));
     }
+    (facets, lit)
+}
+
+/// The picture of facets, and the number of the facet that each pixel shows, from 1, if that is wanted.
+fn seen(
+    (facets, lit): &(Vec<Facet>, Vec<Vec<Lit>>),
+    camera: &Camera,
+    light: &Light,
+    frame: &Frame,
+    wanted: bool,
+) -> (Picture, Vec<u32>) {
     let optics = Optics::new(camera, frame);
-    let plates: Vec<Plate> =
-        facets.iter().zip(&lit).filter_map(|(facet, lit)| optics.plate(facet, lit)).collect();
+    let (mut plates, mut numbers): (Vec<Plate>, Vec<u32>) = (vec![], vec![0]);
+    for ((facet, lit), number) in facets.iter().zip(lit).zip(1..) {
+        if let Some(plate) = optics.plate(facet, lit) {
+            plates.push(plate);
+            numbers.push(number);
+        }
+    }
     let toner = Toner { optics: &optics, suns: &light.suns };
-    scan::scan(&plates, frame, &|plate, at, suns| toner.at(plate, at, suns))
+    let paint = |plate: &Plate<'_>, at, suns| toner.at(plate, at, suns);
+    let (picture, mut seen) = scan::scan(&plates, frame, &paint, wanted);
+    seen.iter_mut().for_each(|plate| *plate = numbers[*plate as usize]);
+    (picture, seen)
 }

@@ -58,12 +58,12 @@ pub struct Level {
 }
 
 /// What a sign covers of its cell, with its lower left corner at the origin.
-struct Sign {
+pub(super) struct Sign {
     sign: char,
     outlines: Vec<Contour>,
 }
 
-fn signs(lettering: &dyn Lettering) -> Vec<Sign> {
+pub(super) fn signs(lettering: &dyn Lettering) -> Vec<Sign> {
     let sign = |sign: char| {
         let (outlines, width) = lettering.outlines(&sign.to_string(), HEIGHT)?;
         let shift = dvec2((CELL.x - width) / 2.0, BASE);
@@ -81,22 +81,36 @@ pub fn levels(lettering: &dyn Lettering, count: usize) -> Vec<Level> {
 }
 
 fn levels_of(signs: &[Sign], count: usize) -> Vec<Level> {
-    let ink = |chosen: &[usize]| {
-        let contours = chosen.iter().flat_map(|&i| &signs[i].outlines);
-        overlay(contours, [], Rule::Union, Fill::NonZero).area() / CELL.element_product()
-    };
     let mut all = vec![(vec![], 0.0)];
     for i in 0..signs.len() {
-        all.push((vec![i], ink(&[i])));
+        all.push(struck(signs, vec![i]));
         for j in 0..i {
-            all.push((vec![j, i], ink(&[j, i])));
-            all.extend((0..j).map(|k| (vec![k, j, i], ink(&[k, j, i]))));
+            all.push(struck(signs, vec![j, i]));
+            all.extend((0..j).map(|k| struck(signs, vec![k, j, i])));
         }
     }
+    evenly(signs, all, count)
+}
+
+/// The same of one strike each.
+pub(super) fn single_levels(signs: &[Sign], count: usize) -> Vec<Level> {
+    let single = (0..signs.len()).map(|i| struck(signs, vec![i]));
+    evenly(signs, single.chain([(vec![], 0.0)]).collect(), count)
+}
+
+/// Signs by their places, and the part of a cell that they cover.
+type Strike = (Vec<usize>, f64);
+
+fn struck(signs: &[Sign], chosen: Vec<usize>) -> Strike {
+    let contours = chosen.iter().flat_map(|&i| &signs[i].outlines);
+    let area = overlay(contours, [], Rule::Union, Fill::NonZero).area();
+    (chosen, area / CELL.element_product())
+}
+
+/// Of many strikes those whose ink is nearest to equal steps.
+fn evenly(signs: &[Sign], mut all: Vec<Strike>, count: usize) -> Vec<Level> {
     // Of strikes with as much ink those with fewer signs come first.
-    all.sort_by(|a: &(Vec<usize>, f64), b| {
-        a.1.total_cmp(&b.1).then(a.0.len().cmp(&b.0.len())).then(a.0.cmp(&b.0))
-    });
+    all.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.len().cmp(&b.0.len())).then(a.0.cmp(&b.0)));
     let most = all.last().map_or(0.0, |last| last.1);
     let mut levels: Vec<Level> = vec![];
     for step in 0..count {
@@ -131,9 +145,8 @@ pub fn overstrike(picture: &Picture, lettering: &dyn Lettering, count: usize) ->
                 line.push(level.signs.get(strike).copied().unwrap_or(' '));
             }
             for sign in signs.iter().filter(|s| level.signs.contains(&s.sign)) {
-                let placed =
-                    |c: &Contour| Mark::Area(c.points.iter().map(|p| *p + corner).collect());
-                text.ink.marks.extend(sign.outlines.iter().map(placed));
+                let placed = |c: &Contour| c.points.iter().map(|p| *p + corner).collect();
+                text.ink.marks.push(Mark::Area(sign.outlines.iter().map(placed).collect()));
             }
         }
         text.lines.push(line.map(|strike| strike.trim_end().to_string()));

@@ -3,7 +3,7 @@
 use glam::{DVec2, dvec2};
 use thiserror::Error;
 
-use super::ink::{Mark, cover};
+use super::ink::cover;
 use crate::output::drawing::Window;
 
 /// Pixels of one picture at most.
@@ -65,6 +65,12 @@ impl Frame {
         Ok(Frame { window, size: [count.x as u32, count.y as u32] })
     }
 
+    /// The same pixels so many times as large.
+    pub fn scaled(&self, scale: f64) -> Frame {
+        let Window { min, max } = self.window;
+        Frame { window: Window { min: min * scale, max: max * scale }, ..*self }
+    }
+
     /// The side of a pixel, mm.
     pub fn pitch(&self) -> f64 {
         (self.window.max.x - self.window.min.x) / f64::from(self.size[0])
@@ -112,12 +118,12 @@ impl Picture {
         self.pixels.iter().map(tone).collect()
     }
 
-    /// The picture with black marks on it.
-    pub fn with_lines(&self, lines: &[Mark]) -> Picture {
-        if lines.is_empty() {
+    /// The picture with black polygons on it.
+    pub(super) fn covered_by(&self, outlines: &[Vec<DVec2>]) -> Picture {
+        if outlines.is_empty() {
             return self.clone();
         }
-        let left = cover(&self.frame, lines).into_iter().map(|share| 1.0 - share);
+        let left = cover(&self.frame, outlines.to_vec()).into_iter().map(|share| 1.0 - share);
         let inked = self.pixels.iter().zip(left).map(|(pixel, left)| pixel.map(|part| part * left));
         Picture { frame: self.frame, pixels: inked.collect() }
     }

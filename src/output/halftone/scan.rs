@@ -27,8 +27,14 @@ const COPLANAR: f64 = 1e-10;
 /// The colour of a plate at a column and row, given which suns shine there, a bit each.
 pub(super) type Paint<'a> = &'a (dyn Fn(&Plate<'_>, DVec2, u32) -> [f32; 3] + Sync);
 
-/// The picture of plates on white paper.
-pub(super) fn scan(plates: &[Plate<'_>], frame: &Frame, paint: Paint<'_>) -> Picture {
+/// The picture of plates on white paper, and if that is wanted which plate, from 1, is seen in the middle of each pixel,
+/// row by row.
+pub(super) fn scan(
+    plates: &[Plate<'_>],
+    frame: &Frame,
+    paint: Paint<'_>,
+    wanted: bool,
+) -> (Picture, Vec<u32>) {
     let rows = frame.size[1] as usize;
     let mut bands: Vec<Vec<u32>> = vec![vec![]; rows.div_ceil(BAND)];
     for (number, plate) in (0u32..).zip(plates) {
@@ -39,11 +45,12 @@ pub(super) fn scan(plates: &[Plate<'_>], frame: &Frame, paint: Paint<'_>) -> Pic
     }
     let made = bands.into_par_iter().enumerate().map(|(number, list)| {
         let first = number * BAND;
-        let mut band = Band::new(plates, frame, first..(first + BAND).min(rows));
+        let mut band = Band::new(plates, frame, first..(first + BAND).min(rows), wanted);
         band.make(&list, paint);
-        band.pixels
+        (band.pixels, band.seen)
     });
-    Picture { frame: *frame, pixels: made.flatten().collect() }
+    let (pixels, seen): (Vec<_>, Vec<_>) = made.unzip();
+    (Picture { frame: *frame, pixels: pixels.concat() }, seen.concat())
 }
 
 /// Where a line crosses an edge of a layer of a plate.
@@ -82,17 +89,25 @@ struct Band<'a> {
     pixels: Vec<[f32; 3]>,
     /// The last colour that each pixel had of a bent plate, with the plate and its suns: that of the pixel's middle.
     colors: Vec<(u32, u32, [f32; 3])>,
+    /// The plate seen in the middle of each pixel, from 1; empty if that is not wanted.
+    seen: Vec<u32>,
     spans: Vec<Span>,
     active: Vec<Span>,
 }
 
 impl<'a> Band<'a> {
-    fn new(plates: &'a [Plate<'a>], frame: &Frame, rows: std::ops::Range<usize>) -> Band<'a> {
+    fn new(
+        plates: &'a [Plate<'a>],
+        frame: &Frame,
+        rows: std::ops::Range<usize>,
+        wanted: bool,
+    ) -> Band<'a> {
         let width = frame.size[0] as usize;
         let lines = vec![vec![]; rows.len() * LINES];
         let pixels = vec![[1.0; 3]; rows.len() * width];
         let colors = vec![(u32::MAX, 0, [1.0; 3]); pixels.len()];
-        Band { plates, width, rows, lines, pixels, colors, spans: vec![], active: vec![] }
+        let seen = vec![0; if wanted { pixels.len() } else { 0 }];
+        Band { plates, width, rows, lines, pixels, colors, seen, spans: vec![], active: vec![] }
     }
 
     fn make(&mut self, list: &[u32], paint: Paint<'_>) {
@@ -109,7 +124,7 @@ impl<'a> Band<'a> {
                 (a.plate, a.layer).cmp(&(b.plate, b.layer)).then(a.x.total_cmp(&b.x))
             });
             let y = (self.rows.start * LINES + line) as f64 + 0.5;
-            self.see(&crossings, y / LINES as f64, line / LINES, paint);
+            self.see(&crossings, y / LINES as f64, line, paint);
         }
     }
 
@@ -126,7 +141,7 @@ impl<'a> Band<'a> {
     }
 
     /// Finds what is seen along a line, and paints it.
-    fn see(&mut self, crossings: &[Crossing], y: f64, row: usize, paint: Paint<'_>) {
+    fn see(&mut self, crossings: &[Crossing], y: f64, line: usize, paint: Paint<'_>) {
         self.find_spans(crossings, y);
         let (mut spans, mut active) =
             (std::mem::take(&mut self.spans), std::mem::take(&mut self.active));
@@ -151,7 +166,10 @@ impl<'a> Band<'a> {
             }
             let to = active.iter().map(|span| span.to).fold(start, f64::min);
             let (seen, to) = nearest(&active, x, to.min(self.width as f64));
-            self.paint(&seen, crossings, (x, to), row, paint);
+            if !self.seen.is_empty() && line % LINES == LINES / 2 {
+                self.mark(seen.plate, (x, to), line / LINES);
+            }
+            self.paint(&seen, crossings, (x, to), line / LINES, paint);
             x = to;
             if x >= self.width as f64 {
                 break;
@@ -176,6 +194,14 @@ impl<'a> Band<'a> {
             }
             start += own.len();
         }
+    }
+
+    /// Writes down that a plate is seen in the middles of pixels.
+    fn mark(&mut self, plate: u32, (from, to): (f64, f64), row: usize) {
+        let middles = [from, to].map(|x| (x - 0.5).ceil().max(0.0) as usize);
+        let row = &mut self.seen[row * self.width..][..self.width];
+        let to = middles[1].min(self.width);
+        row[middles[0].min(to)..to].fill(plate + 1);
     }
 
     /// Paints a part of a line with a plate.

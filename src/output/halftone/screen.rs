@@ -6,51 +6,14 @@ use super::{
     average::Average,
     diffusion::{ATKINSON, FLOYD_STEINBERG, diffusion},
     dots::dots,
+    guide::Guide,
+    hatch::hatch,
     ink::Ink,
     picture::Picture,
     stipple::stipple,
-    strokes::{hatch, lines},
+    strokes::lines,
 };
-
-/// How tones are made of black shapes. Pitches in millimetres, angles in degrees from the x axis.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub enum Screen {
-    /// Dots in a lattice, the darker the larger.
-    Dots {
-        /// From dot to dot.
-        pitch: f64,
-        /// Of the rows of dots.
-        angle: f64,
-    },
-    /// Lines, the darker the wider.
-    Lines {
-        /// From line to line.
-        pitch: f64,
-        /// Of the lines.
-        angle: f64,
-    },
-    /// Strokes of one pen, the darker the more, crossing each other in the dark.
-    Hatch {
-        /// From stroke to stroke; the pen is half as wide.
-        pitch: f64,
-        /// Of the first strokes.
-        angle: f64,
-    },
-    /// Equal dots, the darker the more, without an order.
-    Stipple {
-        /// The least distance of dots.
-        pitch: f64,
-        /// What spreads them.
-        seed: u64,
-    },
-    /// Black squares.
-    Diffusion {
-        /// Their side.
-        side: f64,
-        /// Atkinson's filter in place of Floyd's and Steinberg's.
-        atkinson: bool,
-    },
-}
+use crate::geom::Screen;
 
 /// Why a screen makes nothing of a picture.
 #[derive(Clone, Copy, PartialEq, Debug, Error)]
@@ -72,32 +35,30 @@ pub enum ScreenError {
 pub const CELLS: u64 = 4_000_000;
 
 impl Screen {
-    /// From cell to cell, mm.
-    pub fn pitch(&self) -> f64 {
-        match *self {
-            Screen::Dots { pitch, .. }
-            | Screen::Lines { pitch, .. }
-            | Screen::Hatch { pitch, .. }
-            | Screen::Stipple { pitch, .. } => pitch,
-            Screen::Diffusion { side, .. } => side,
-        }
-    }
-
     /// The tones of a picture in ink. Fails for a screen finer than the picture's pixels, and for one with too many
     /// cells.
     ///
     /// ```
     /// use glam::DVec2;
-    /// use katachi::output::{drawing::Window, halftone::{Frame, Picture, Screen}};
+    /// use katachi::output::{drawing::Window, halftone::{DotShape, Frame, Picture, Screen}};
     /// let window = Window { min: DVec2::ZERO, max: DVec2::splat(25.4) };
     /// let frame = Frame::new(window, 50.0).unwrap();
     /// let grey = Picture { frame, pixels: vec![[0.75; 3]; 2500] };
-    /// let ink = Screen::Dots { pitch: 2.54, angle: 0.0 }.ink(&grey).unwrap();
+    /// let ink = Screen::Dots { pitch: 2.54, angle: 0.0, shape: DotShape::Round }.ink(&grey).unwrap();
     /// let pixels = ink.picture().tones();
     /// let mean: f32 = pixels.iter().sum::<f32>() / 2500.0;
     /// assert!((mean - 0.75).abs() < 0.02);
     /// ```
     pub fn ink(&self, picture: &Picture) -> Result<Ink, ScreenError> {
+        self.ink_along(picture, None)
+    }
+
+    /// The same, strokes of a hatch along the parameter lines of the faces that the picture shows.
+    pub fn ink_along(
+        &self,
+        picture: &Picture,
+        guide: Option<&Guide<'_>>,
+    ) -> Result<Ink, ScreenError> {
         let (pitch, pixel) = (self.pitch(), picture.frame.pitch());
         if pitch < pixel * (1.0 - SAME) {
             return Err(ScreenError::BelowPixels { pitch, pixel });
@@ -109,9 +70,9 @@ impl Screen {
         }
         let tones = Average::of(picture);
         let marks = match *self {
-            Screen::Dots { pitch, angle } => dots(&tones, pitch, angle),
+            Screen::Dots { pitch, angle, shape } => dots(&tones, pitch, angle, shape),
             Screen::Lines { pitch, angle } => lines(&tones, pitch, angle),
-            Screen::Hatch { pitch, angle } => hatch(&tones, pitch, angle),
+            Screen::Hatch { pitch, angle } => hatch(&tones, pitch, angle, guide),
             Screen::Stipple { pitch, seed } => stipple(&tones, pitch, seed),
             Screen::Diffusion { side, atkinson } => {
                 diffusion(&tones, side, if atkinson { ATKINSON } else { FLOYD_STEINBERG })

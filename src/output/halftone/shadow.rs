@@ -91,7 +91,20 @@ impl<'a> Shadows<'a> {
         self.lifted(&region, &slope)
     }
 
-    fn on(&self, seen: &Seen) -> Lit {
+    /// The cast shadow on each facet that the sun sees, if there is one.
+    pub fn cast(&self) -> Vec<(u32, Vec<Vec<DVec3>>)> {
+        let cast = |seen: &Seen| {
+            let contours = self.before(seen).contours();
+            let own = seen.loops.iter().map(|l| flat(l)).collect::<Vec<_>>();
+            let region = overlay(&own, &contours, Rule::Intersection, Fill::Positive);
+            (!region.is_empty()).then(|| (seen.facet, self.lifted(&region, &seen.slope)))
+        };
+        let found: Vec<_> = self.seen.par_iter().map(cast).collect();
+        found.into_iter().flatten().collect()
+    }
+
+    /// The rim of all that is between a facet and the sun.
+    fn before(&self, seen: &Seen) -> Rim {
         let mut rim = Rim::default();
         let query = Bounds { max: seen.bounds.max.with_z(f64::INFINITY), ..seen.bounds };
         self.tree.visit(&query, |other| {
@@ -100,6 +113,11 @@ impl<'a> Shadows<'a> {
                 rim.add(other, &seen.slope, self.flush);
             }
         });
+        rim
+    }
+
+    fn on(&self, seen: &Seen) -> Lit {
+        let rim = self.before(seen);
         if rim.edges.is_empty() {
             return Lit::All;
         }

@@ -9,7 +9,7 @@ use glam::{DVec2, dvec2};
 use super::{
     average::Average,
     dots::lattice,
-    ink::{Mark, cover},
+    ink::{Ink, Mark},
     picture::Frame,
 };
 use crate::output::drawing::Window;
@@ -64,8 +64,8 @@ fn coverage(ranks: &[u32]) -> Vec<f64> {
                 }
             }
         }
-        let shares = cover(&frame, &marks);
-        shares.iter().map(|s| f64::from(*s)).sum::<f64>() / shares.len() as f64
+        let shares = Ink { frame, marks }.picture().pixels;
+        shares.iter().map(|[white, ..]| 1.0 - f64::from(*white)).sum::<f64>() / shares.len() as f64
     };
     (0..=STEPS).map(covered).collect()
 }

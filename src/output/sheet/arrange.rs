@@ -4,7 +4,7 @@ use glam::{DVec2, dvec2};
 use thiserror::Error;
 
 use super::{
-    Figure, Title, frame,
+    Figure, Print, Title, frame,
     lettering::Lettering,
     page::{Group, Ink, Page, bounds, moved},
     pen::Style,
@@ -25,11 +25,20 @@ pub enum Spot {
     },
 }
 
+/// What is put on a page.
+#[derive(Clone, Copy, Debug)]
+pub enum Subject<'a> {
+    /// A drawing.
+    Figure(&'a Figure),
+    /// A half-tone, made for the scale that it is placed at.
+    Print(&'a Print),
+}
+
 /// A view to be put on a page.
 #[derive(Clone, Debug)]
 pub struct Placing<'a> {
-    /// The view.
-    pub figure: &'a Figure,
+    /// The view or picture.
+    pub subject: Subject<'a>,
     /// What it is called; may be empty.
     pub name: String,
     /// From which side it is taken, if it is one of the usual views.
@@ -132,15 +141,18 @@ pub fn arrange(
         standing.push(Some(found));
     }
     for (placing, found) in placings.iter().zip(standing) {
-        let Some(Standing { inks, scale, .. }) = found else { continue };
-        let scale = scale_text(scale);
-        let (name, style) = (placing.name.clone(), placing.figure.style.clone());
-        groups.push(Group { name, data: vec![("scale", scale)], style, inks });
+        let Some(Standing { inks, scale, min, max, .. }) = found else { continue };
+        let data = vec![("scale", scale_text(scale))];
+        let (style, clip) = match placing.subject {
+            Subject::Figure(figure) => (figure.style.clone(), None),
+            Subject::Print(print) => (print.style.clone(), Some((min, max))),
+        };
+        groups.push(Group { name: placing.name.clone(), data, style, clip, inks });
     }
     let border = border(sheet, area, lettering);
     if !border.is_empty() {
         let style = Style::default();
-        groups.push(Group { name: "frame".into(), data: vec![], style, inks: border });
+        groups.push(Group { name: "frame".into(), data: vec![], style, clip: None, inks: border });
     }
     (Page { size: sheet.size, title: sheet.name.clone(), groups }, misfits)
 }
@@ -184,8 +196,14 @@ fn stand(
         Spot::Beside { other, .. } => Some(standing.get(other)?.as_ref()?),
     };
     let scale = other.map_or(placing.scale, |other| other.scale);
-    let inks = placing.figure.inks(scale, lettering);
-    let (low, high) = bounds(&inks).unwrap_or_default();
+    let (inks, (low, high)) = match placing.subject {
+        Subject::Figure(figure) => {
+            let inks = figure.inks(scale, lettering);
+            let reach = bounds(&inks).unwrap_or_default();
+            (inks, reach)
+        }
+        Subject::Print(print) => (print.inks.clone(), (print.min, print.max)),
+    };
     let origin = match placing.spot {
         Spot::At(at) => at - (low + high) / 2.0,
         Spot::Beside { other: number, gap } => {
@@ -274,7 +292,8 @@ mod tests {
     }
 
     fn placing(figure: &Figure, direction: View, spot: Spot) -> Placing<'_> {
-        Placing { figure, name: String::new(), direction: Some(direction), spot, scale: 1.0 }
+        let subject = Subject::Figure(figure);
+        Placing { subject, name: String::new(), direction: Some(direction), spot, scale: 1.0 }
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! DXF of AutoCAD 2000 (AC1015): layers and line types by class of line, millimetres.
 //!
 //! Lines are `LINE` and `LWPOLYLINE`, arcs `ARC`, `CIRCLE` and `ELLIPSE`, cubics `SPLINE`; filled areas are closed
-//! polylines and text is `TEXT`, so that a person can edit both.
+//! polylines and text is `TEXT`, so that a person can edit both. Of half-tones, dots are circles, areas closed polylines and
+//! strokes lines; of one made of pixels there is a frame with a note in it.
 
 use std::{
     f64::consts::TAU,
@@ -13,6 +14,7 @@ use glam::DVec2;
 use super::{
     page::{Ink, Letters, Mark, Page},
     pen::{Layer, Pen},
+    tone::Tone,
 };
 use crate::output::{
     drawing::{Path, Segment},
@@ -21,6 +23,9 @@ use crate::output::{
 
 /// Half axes whose lengths differ by less than this part make a circle.
 const ROUND: f64 = 1e-9;
+
+/// Height of capitals of a note, mm.
+const NOTE: f64 = 2.5;
 
 /// The page as the bytes of a DXF file.
 ///
@@ -322,7 +327,34 @@ impl File {
             Mark::Line(path) => self.path(path, ink.layer),
             Mark::Area(rings) => rings.iter().for_each(|ring| self.area(ring, ink.layer)),
             Mark::Text(letters) => self.letters(letters, ink.layer),
+            Mark::Tone(tone) => self.tone(tone, ink.layer),
         }
+    }
+
+    fn tone(&mut self, tone: &Tone, layer: Layer) {
+        match tone {
+            Tone::Dots(dots) => dots.iter().for_each(|(center, r)| self.circle(*center, *r, layer)),
+            Tone::Areas(areas) => {
+                areas.iter().flatten().for_each(|ring| self.polyline(ring, true, layer));
+            }
+            Tone::Strokes { strokes, .. } => {
+                strokes.iter().for_each(|points| self.straight(points, layer));
+            }
+            Tone::Pixels { min, max, .. } => {
+                let corners = [*min, DVec2::new(max.x, min.y), *max, DVec2::new(min.x, max.y)];
+                self.polyline(&corners, true, layer);
+                let text = "picture of pixels: see the PDF or SVG".into();
+                let at = *min + DVec2::splat(NOTE);
+                let note = Letters { text, at, height: NOTE, angle: 0.0, outlines: vec![] };
+                self.letters(&note, layer);
+            }
+        }
+    }
+
+    fn circle(&mut self, center: DVec2, r: f64, layer: Layer) {
+        self.entity("CIRCLE", layer, "AcDbCircle");
+        self.point(10, center);
+        self.real(40, r);
     }
 
     /// A filled triangle, such as the head of an arrow; other areas by their outline.

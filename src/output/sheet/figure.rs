@@ -127,7 +127,8 @@ impl Figure {
         let (min, max) = bounds(&inks).unwrap_or_default();
         let offset = DVec2::splat(MARGIN) - min;
         let inks = inks.iter().map(|ink| moved(ink, offset)).collect();
-        let group = Group { name: title.into(), data: vec![], style: self.style.clone(), inks };
+        let group =
+            Group { name: title.into(), data: vec![], style: self.style.clone(), clip: None, inks };
         Page { size: max - min + 2.0 * MARGIN, title: title.into(), groups: vec![group] }
     }
 }
@@ -153,6 +154,7 @@ fn layer(line: &Line) -> Layer {
         (Class::Cutting, _) => Layer::Cutting,
         (Class::Centre, _) => Layer::Center,
         (Class::Visible, Kind::Pattern) => Layer::Pattern,
+        (Class::Visible, Kind::Shadow) => Layer::Shadow,
         (Class::Visible, Kind::Free) => Layer::Free,
         (Class::Visible, Kind::Upper) => Layer::Upper,
         (Class::Visible, Kind::Lower) => Layer::Lower,

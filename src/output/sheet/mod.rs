@@ -19,8 +19,9 @@ mod page;
 pub mod pdf;
 mod pen;
 pub mod svg;
+mod tone;
 
-pub use arrange::{Misfit, Placing, Sheet, Spot, arrange, scale_text};
+pub use arrange::{Misfit, Placing, Sheet, Spot, Subject, arrange, scale_text};
 pub use cutting::CuttingLine;
 pub use dimension::{Dimension, Shape, dimension_number};
 pub use figure::Figure;
@@ -29,6 +30,7 @@ pub use hatch::{Cut, hatched};
 pub use lettering::{Anchor, Lettering, Unlettered};
 pub use page::{Group, Ink, Letters, Mark, Page, bounds};
 pub use pen::{Layer, Pen, Style};
+pub use tone::{Print, Tone};
 
 /// The formats that pages are written in.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]

@@ -4,7 +4,10 @@ use std::sync::Arc;
 
 use glam::{DVec2, dvec2};
 
-use super::pen::{Layer, Style};
+use super::{
+    pen::{Layer, Style},
+    tone::Tone,
+};
 use crate::output::drawing::{Path, Segment};
 
 /// A sheet of paper, millimetres from its lower left corner, y up.
@@ -27,6 +30,8 @@ pub struct Group {
     pub data: Vec<(&'static str, String)>,
     /// Its pens.
     pub style: Style,
+    /// Opposite corners of the rectangle that its inks end at, if there is one.
+    pub clip: Option<(DVec2, DVec2)>,
     /// Lines, areas and letters.
     pub inks: Vec<Ink>,
 }
@@ -58,6 +63,8 @@ pub enum Mark {
     Area(Vec<Vec<DVec2>>),
     /// A line of text.
     Text(Letters),
+    /// A half-tone, black whatever the pen.
+    Tone(Tone),
 }
 
 /// A line of text and its outlines.
@@ -109,6 +116,7 @@ pub fn bounds<'a>(inks: impl IntoIterator<Item = &'a Ink>) -> Option<(DVec2, DVe
             Mark::Line(path) => reach.path(path),
             Mark::Area(rings) => rings.iter().flatten().for_each(|&p| reach.point(p)),
             Mark::Text(text) => text.outlines.iter().flatten().for_each(|&p| reach.point(p)),
+            Mark::Tone(tone) => tone.corners().into_iter().for_each(|p| reach.point(p)),
         }
     }
     reach.0
@@ -183,6 +191,7 @@ pub fn moved(ink: &Ink, offset: DVec2) -> Ink {
             let outlines = rings(&text.outlines);
             Mark::Text(Letters { at: text.at + offset, outlines, ..text.clone() })
         }
+        Mark::Tone(tone) => Mark::Tone(tone.moved(offset)),
     };
     Ink { layer: ink.layer, mark, part: ink.part.clone() }
 }

@@ -1,8 +1,8 @@
 //! PDF: one page, a layer (optional content group) for each class of line. Text is drawn by its outlines, so that it
 //! looks the same everywhere, under characters that are not painted but can be searched and copied.
 //!
-//! Written with pdf-writer, the low floor of krilla: drawings need no fonts, images or tagging, but layers, which
-//! krilla does not offer.
+//! Written with pdf-writer, the low floor of krilla: drawings need no fonts or tagging, but layers, which krilla does
+//! not offer.
 
 use std::io::Write;
 
@@ -16,13 +16,17 @@ use pdf_writer::{
 use super::{
     page::{Group, Letters, Mark, Page},
     pen::{Layer, Pen},
+    tone::Tone,
 };
 use crate::{
     geom::{
         mesh::Color,
         trig::{cos_deg, sin_deg},
     },
-    output::drawing::{Path, Segment},
+    output::{
+        drawing::{Path, Segment},
+        pixels::Pixels,
+    },
 };
 
 /// Points (1/72 inch) for each millimetre.
@@ -52,6 +56,8 @@ pub fn write(page: &Page) -> Vec<u8> {
     let has = |layer: &Layer| page.groups.iter().any(|g| g.layer(*layer).next().is_some());
     let layers: Vec<Layer> = Layer::ALL.into_iter().filter(has).collect();
     let refs: Vec<Ref> = (FIRST_LAYER..).take(layers.len()).map(Ref::new).collect();
+    let images: Vec<(&Pixels, Ref)> =
+        page.groups.iter().flat_map(images).zip(first_image(&refs)).collect();
     let mut pdf = Pdf::new();
     write_catalog(&mut pdf, &refs);
     pdf.pages(PAGES).kids([PAGE]).count(1);
@@ -66,6 +72,11 @@ pub fn write(page: &Page) -> Vec<u8> {
     }
     properties.finish();
     resources.fonts().pair(HELVETICA, FONT);
+    let mut objects = resources.x_objects();
+    for (number, (_, reference)) in images.iter().enumerate() {
+        objects.pair(Name(image_name(number).as_bytes()), *reference);
+    }
+    objects.finish();
     resources.finish();
     sheet.finish();
     for (layer, &reference) in layers.iter().zip(&refs) {
@@ -76,6 +87,9 @@ pub fn write(page: &Page) -> Vec<u8> {
     pdf.type1_font(FONT)
         .base_font(Name(b"Helvetica"))
         .encoding_predefined(Name(b"WinAnsiEncoding"));
+    for (pixels, reference) in &images {
+        write_image(&mut pdf, *reference, pixels);
+    }
     pdf.stream(CONTENT, &deflated(&content(page))).filter(Filter::FlateDecode);
     let mut info = pdf.document_info(INFO);
     info.title(TextStr(&page.title));
@@ -94,9 +108,12 @@ fn write_catalog(pdf: &mut Pdf, layers: &[Ref]) {
     standard.insert(Name(b"ON")).array().items(layers);
 }
 
+/// How hard bytes are compressed: half-tones of thousands of shapes take four times as long for the last 3 %.
+const LEVEL: u32 = 4;
+
 /// Bytes compressed. A vector takes all that is written to it.
 fn deflated(bytes: &[u8]) -> Vec<u8> {
-    let mut encoder = ZlibEncoder::new(vec![], Compression::best());
+    let mut encoder = ZlibEncoder::new(vec![], Compression::new(LEVEL));
     encoder.write_all(bytes).and_then(|()| encoder.finish()).expect("a vector grows")
 }
 
@@ -104,17 +121,92 @@ fn content(page: &Page) -> Vec<u8> {
     let mut content = Content::new();
     content.transform([POINTS as f32, 0.0, 0.0, POINTS as f32, 0.0, 0.0]);
     content.set_line_join(LineJoinStyle::RoundJoin);
+    let mut image = 0;
     for group in &page.groups {
+        content.save_state();
+        if let Some((min, max)) = group.clip {
+            let ((x, y), (w, h)) = (xy(min), xy(max - min));
+            content.rect(x, y, w, h).clip_nonzero().end_path();
+        }
         for layer in Layer::ALL {
             if group.layer(layer).next().is_some() {
-                draw_layer(&mut content, group, layer);
+                draw_layer(&mut content, group, layer, &mut image);
             }
         }
+        content.restore_state();
     }
     content.finish().into_vec()
 }
 
-fn draw_layer(content: &mut Content, group: &Group, layer: Layer) {
+/// The pixels of a group, in the order in which they are drawn.
+fn images(group: &Group) -> impl Iterator<Item = &Pixels> {
+    group.layer(Layer::Tone).filter_map(|ink| match &ink.mark {
+        Mark::Tone(Tone::Pixels { pixels, .. }) => Some(&**pixels),
+        _ => None,
+    })
+}
+
+/// The numbers of images follow those of layers.
+fn first_image(layers: &[Ref]) -> impl Iterator<Item = Ref> {
+    (FIRST_LAYER + layers.len() as i32..).map(Ref::new)
+}
+
+fn image_name(number: usize) -> String {
+    format!("I{number}")
+}
+
+fn write_image(pdf: &mut Pdf, reference: Ref, pixels: &Pixels) {
+    let samples = deflated(&pixels.samples);
+    let mut image = pdf.image_xobject(reference, &samples);
+    image.filter(Filter::FlateDecode);
+    image.width(pixels.size[0] as i32).height(pixels.size[1] as i32).bits_per_component(8);
+    if pixels.is_grey {
+        image.color_space().device_gray();
+    } else {
+        image.color_space().device_rgb();
+    }
+}
+
+fn draw_tone(content: &mut Content, tone: &Tone, image: &mut usize) {
+    content.set_fill_gray(0.0);
+    match tone {
+        Tone::Dots(dots) => dots.iter().for_each(|(p, r)| disc(content, *p, *r)),
+        Tone::Areas(areas) => areas.iter().for_each(|rings| fill(content, rings)),
+        Tone::Strokes { strokes, width } => {
+            content.set_stroke_gray(0.0).set_line_width(*width as f32);
+            content.set_line_cap(LineCapStyle::ButtCap);
+            for points in strokes {
+                run(content, points);
+                content.stroke();
+            }
+        }
+        Tone::Pixels { min, max, .. } => {
+            let ((x, y), (w, h)) = (xy(*min), xy(max - min));
+            content.save_state().transform([w, 0.0, 0.0, h, x, y]);
+            content.x_object(Name(image_name(*image).as_bytes())).restore_state();
+            *image += 1;
+        }
+    }
+}
+
+/// The part of the radius that the handles of four cubics have which make a circle.
+const HANDLE: f64 = 0.552_284_749_8;
+
+/// A black disc of four cubics.
+fn disc(content: &mut Content, center: DVec2, r: f64) {
+    let (x, y) = xy(center + DVec2::X * r);
+    content.move_to(x, y);
+    let mut out = DVec2::X;
+    for _ in 0..4 {
+        let ahead = out.perp();
+        let handles = [out + ahead * HANDLE, ahead + out * HANDLE, ahead];
+        cubic(content, handles.map(|p| center + p * r));
+        out = ahead;
+    }
+    content.fill_nonzero();
+}
+
+fn draw_layer(content: &mut Content, group: &Group, layer: Layer, image: &mut usize) {
     content
         .begin_marked_content_with_properties(Name(b"OC"))
         .properties_named(Name(layer.name().as_bytes()));
@@ -124,6 +216,7 @@ fn draw_layer(content: &mut Content, group: &Group, layer: Layer) {
             Mark::Line(path) => draw_path(content, path),
             Mark::Area(rings) => fill(content, rings),
             Mark::Text(letters) => write_text(content, letters),
+            Mark::Tone(tone) => draw_tone(content, tone, image),
         }
     }
     content.end_marked_content();
@@ -225,17 +318,22 @@ fn fill(content: &mut Content, rings: &[Vec<DVec2>]) {
         return;
     }
     for ring in rings {
-        for (i, &p) in ring.iter().enumerate() {
-            let (x, y) = xy(p);
-            if i == 0 {
-                content.move_to(x, y)
-            } else {
-                content.line_to(x, y)
-            };
-        }
+        run(content, ring);
         content.close_path();
     }
     content.fill_even_odd();
+}
+
+/// Straight lines from point to point.
+fn run(content: &mut Content, points: &[DVec2]) {
+    for (i, &p) in points.iter().enumerate() {
+        let (x, y) = xy(p);
+        if i == 0 {
+            content.move_to(x, y)
+        } else {
+            content.line_to(x, y)
+        };
+    }
 }
 
 #[cfg(test)]

@@ -5,6 +5,10 @@ use crate::geom::mesh::Color;
 /// What an ink stands for; files keep each in a layer of its own.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub enum Layer {
+    /// Half-tones.
+    Tone,
+    /// Outlines of cast shadows and lines in them.
+    Shadow,
     /// Hatching of cut faces.
     Hatch,
     /// Hidden lines.
@@ -35,7 +39,9 @@ pub enum Layer {
 
 impl Layer {
     /// All of them, from the lowest to the topmost.
-    pub const ALL: [Layer; 13] = [
+    pub const ALL: [Layer; 15] = [
+        Layer::Tone,
+        Layer::Shadow,
         Layer::Hatch,
         Layer::Hidden,
         Layer::Pattern,
@@ -54,6 +60,8 @@ impl Layer {
     /// Its name in files: the class in SVG, the layer in DXF and PDF.
     pub fn name(self) -> &'static str {
         match self {
+            Layer::Tone => "tone",
+            Layer::Shadow => "shadow",
             Layer::Hatch => "hatch",
             Layer::Hidden => "hidden",
             Layer::Pattern => "pattern",
@@ -86,7 +94,10 @@ impl Layer {
             Layer::Free | Layer::Title => (0.35, &[]),
             Layer::Frame => (0.7, &[]),
             Layer::Lower => (0.13, &[]),
-            Layer::Hatch | Layer::Pattern | Layer::Upper | Layer::Dimension => (0.25, &[]),
+            Layer::Shadow => (0.18, &[]),
+            Layer::Tone | Layer::Hatch | Layer::Pattern | Layer::Upper | Layer::Dimension => {
+                (0.25, &[])
+            }
         };
         let dash = dash.iter().map(|part| part * width).collect();
         Pen { width, dash, color: BLACK }

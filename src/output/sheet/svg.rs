@@ -7,15 +7,19 @@ use std::fmt::Write;
 
 use glam::DVec2;
 use svg::node::element::Element;
-use svg::node::{Node, Text};
+use svg::node::{Blob, Node, Text};
 
 use super::{
     page::{Group, Ink, Mark, Page},
     pen::{Layer, Pen},
+    tone::Tone,
 };
 use crate::{
     geom::mesh::Color,
-    output::drawing::{Path, Segment},
+    output::{
+        drawing::{Path, Segment},
+        pixels::Pixels,
+    },
 };
 
 /// The page as the bytes of an SVG file.
@@ -40,14 +44,24 @@ pub fn write(page: &Page) -> Vec<u8> {
     let mut title = Element::new("title");
     title.append(Text::new(plain(&page.title)));
     root.append(title);
-    for group in &page.groups {
-        root.append(group_element(group, page.size.y));
+    for (number, group) in page.groups.iter().enumerate() {
+        root.append(group_element(group, number, page.size.y));
     }
     format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{root}\n").into_bytes()
 }
 
-fn group_element(group: &Group, height: f64) -> Element {
+fn group_element(group: &Group, number: usize, height: f64) -> Element {
     let mut element = Element::new("g");
+    if let Some((min, max)) = group.clip {
+        let name = format!("clip{number}");
+        element.assign("clip-path", format!("url(#{name})"));
+        let mut border = Element::new("rect");
+        rectangle(&mut border, (min, max), height);
+        let mut clip = Element::new("clipPath");
+        clip.assign("id", name);
+        clip.append(border);
+        element.append(clip);
+    }
     if !group.name.is_empty() {
         element.assign("data-name", plain(&group.name));
         element.assign("inkscape:label", plain(&group.name));
@@ -73,7 +87,9 @@ fn layer_element(group: &Group, layer: Layer, height: f64) -> Element {
     element.assign("fill", "none");
     element.assign("stroke", hex(pen.color));
     element.assign("stroke-width", Number(pen.width).to_string());
-    element.assign("stroke-linecap", "round");
+    if layer != Layer::Tone {
+        element.assign("stroke-linecap", "round");
+    }
     element.assign("stroke-linejoin", "round");
     if !pen.dash.is_empty() {
         element.assign("stroke-linecap", "butt");
@@ -86,9 +102,77 @@ fn layer_element(group: &Group, layer: Layer, height: f64) -> Element {
     element
 }
 
+/// Puts a shape where a rectangle of the page is.
+fn rectangle(element: &mut Element, (min, max): (DVec2, DVec2), height: f64) {
+    let size = max - min;
+    let numbers = [("x", min.x), ("y", height - max.y), ("width", size.x), ("height", size.y)];
+    numbers.into_iter().for_each(|(name, x)| element.assign(name, Number(x).to_string()));
+}
+
+/// A half-tone. Shapes are one text, as there are many.
+fn tone_element(tone: &Tone, height: f64) -> Element {
+    let mut element = Element::new("g");
+    let mut shapes = String::new();
+    element.assign("fill", "#000000");
+    element.assign("stroke", "none");
+    // Writing to a string cannot fail.
+    let _ = match tone {
+        Tone::Dots(dots) => {
+            element.assign("class", "dots");
+            dots.iter().try_for_each(|(p, r)| {
+                let (x, y, r) = (Number(p.x), Number(height - p.y), Number(*r));
+                writeln!(shapes, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\"/>")
+            })
+        }
+        Tone::Areas(areas) => {
+            element.assign("class", "areas");
+            element.assign("fill-rule", "evenodd");
+            let mut write = |data| writeln!(shapes, "<path d=\"{data}\"/>");
+            areas.iter().try_for_each(|rings| write(ring_data(rings, height)))
+        }
+        Tone::Strokes { strokes, width } => {
+            element.assign("class", "strokes");
+            element.assign("fill", "none");
+            element.assign("stroke", "#000000");
+            element.assign("stroke-width", Number(*width).to_string());
+            let mut write = |data| writeln!(shapes, "<path d=\"{data}\"/>");
+            strokes.iter().try_for_each(|points| write(run_data(points, height)))
+        }
+        Tone::Pixels { min, max, pixels } => return image_element((*min, *max), pixels, height),
+    };
+    element.append(Blob::new(shapes.trim_end()));
+    element
+}
+
+/// Pixels that fill a rectangle.
+fn image_element((min, max): (DVec2, DVec2), pixels: &Pixels, height: f64) -> Element {
+    let mut image = Element::new("image");
+    rectangle(&mut image, (min, max), height);
+    image.assign("preserveAspectRatio", "none");
+    let side = (max.x - min.x) / f64::from(pixels.size[0]);
+    image.assign("href", format!("data:image/png;base64,{}", base64(&pixels.png(side))));
+    image
+}
+
+/// Bytes as text (RFC 4648).
+fn base64(bytes: &[u8]) -> String {
+    const SIGNS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for three in bytes.chunks(3) {
+        let at = |i: usize| u32::from(three.get(i).copied().unwrap_or(0));
+        let bits = at(0) << 16 | at(1) << 8 | at(2);
+        for i in 0..4 {
+            let sign = SIGNS[(bits >> (18 - 6 * i) & 63) as usize];
+            text.push(if i > three.len() { '=' } else { char::from(sign) });
+        }
+    }
+    text
+}
+
 fn ink_element(ink: &Ink, pen: &Pen, height: f64) -> Element {
     let mut element = Element::new("path");
     let data = match &ink.mark {
+        Mark::Tone(tone) => return tone_element(tone, height),
         Mark::Line(path) => path_data(path, height),
         Mark::Area(rings) => ring_data(rings, height),
         Mark::Text(letters) => ring_data(&letters.outlines, height),
@@ -157,10 +241,17 @@ const LONGEST_ARC: f64 = 3.0;
 fn ring_data(rings: &[Vec<DVec2>], height: f64) -> String {
     let mut data = String::new();
     for ring in rings {
-        for (i, &p) in ring.iter().enumerate() {
-            let _ = write!(data, "{}{}", if i == 0 { 'M' } else { 'L' }, At(p, height));
-        }
+        data += &run_data(ring, height);
         data.push('Z');
+    }
+    data
+}
+
+/// Straight lines from point to point.
+fn run_data(points: &[DVec2], height: f64) -> String {
+    let mut data = String::new();
+    for (i, &p) in points.iter().enumerate() {
+        let _ = write!(data, "{}{}", if i == 0 { 'M' } else { 'L' }, At(p, height));
     }
     data
 }
@@ -208,6 +299,13 @@ mod tests {
         assert_eq!(data(0.0, TAU / 4.0), "M2 0A2 1 0 0 0 0 -1");
         assert_eq!(data(TAU / 4.0, 0.0), "M0 -1A2 1 0 0 1 2 0");
         assert_eq!(data(0.0, TAU).matches('A').count(), 3);
+    }
+
+    #[test]
+    fn base64_is_that_of_the_rfc() {
+        let texts = ["", "f", "fo", "foo", "foob", "fooba", "foobar"];
+        let coded = ["", "Zg==", "Zm8=", "Zm9v", "Zm9vYg==", "Zm9vYmE=", "Zm9vYmFy"];
+        assert_eq!(texts.map(|text| base64(text.as_bytes())), coded);
     }
 
     #[test]
