@@ -40,7 +40,9 @@ const OVERDRAWN_IN_ALL: f64 = 0.01;
 /// and are drawn each.
 const WRONG: [(&str, &str); 1] = [("rounded_bracket.kata", "near")];
 /// Examples whose contours run over facets, and one with ribs a few hundredths of a millimetre apart.
-const OVERLAPPING: [&str; 4] = ["bottle_cap.kata", "gyroid.kata", "metaball.kata", "pebble.kata"];
+const OVERLAPPING: [&str; 3] = ["bottle_cap.kata", "gyroid.kata", "pebble.kata"];
+/// Examples whose hidden contours do, or whose hidden walls are off by rounding where they are seen edge-on.
+const OVERLAPPING_BEHIND: [&str; 2] = ["metaball.kata", "soap_box.kata"];
 
 /// Where the examples are looked at from.
 #[derive(Clone, Copy, Debug)]
@@ -343,7 +345,9 @@ fn faults(root: &Path, model: &str, part: &Path, view: View) -> Vec<String> {
     for (what, lines, most) in [("visible", &lines, OVERDRAWN), ("all", &both, OVERDRAWN_IN_ALL)] {
         let (twice, at, all) = overdraw(lines);
         let ratio = all / (all - twice).max(1e-9);
-        if ratio > 1.0 + most && !OVERLAPPING.iter().any(|known| model.ends_with(known)) {
+        let mut known =
+            OVERLAPPING.iter().chain(OVERLAPPING_BEHIND.iter().filter(|_| what == "all"));
+        if ratio > 1.0 + most && !known.any(|known| model.ends_with(known)) {
             faults.push(format!(
                 "{model}: {name} {view:?}: {what} lines overlap {ratio:.4}, at {at}"
             ));
