@@ -64,22 +64,23 @@ pub fn all(
     for ((&shape, mesh), id) in shapes.iter().zip(meshes).zip(0..) {
         for (figures, child, placement) in found(tracer.graph, &figured, shape)? {
             let lines = lines(tracer, figures)?;
-            let mut add = |points, round| {
-                strokes.push(Stroke { points, kind: Kind::Pattern, id, round });
+            let mut add = |points, drawn, round| {
+                strokes.push(Stroke { points, kind: Kind::Pattern, id, round, drawn });
             };
             match ground(tracer, figures, child)? {
                 Ground::Flat(frame) => {
                     let onto = placement.after(&frame.placement());
                     let area = Area::new(mesh, &onto);
                     for line in lines.iter().map(|line| line.placed(&onto)) {
-                        area.parts(&line).into_iter().for_each(|part| add(part, line.round));
+                        let parts = area.parts(&line).into_iter();
+                        parts.for_each(|part| add(part, vec![], line.round));
                     }
                 }
                 Ground::Round(surface, sheet) => {
                     let wrapped = Wrapped::new(&sheet, surface, placement, mesh)
                         .ok_or_else(|| stretched(figures))?;
                     let parts = lines.iter().flat_map(|line| wrapped.parts(line));
-                    parts.for_each(|part| add(part, None));
+                    parts.for_each(|(facets, surface)| add(facets, surface, None));
                 }
             }
         }

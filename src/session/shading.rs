@@ -88,7 +88,7 @@ impl Drafter<'_> {
             let meshes = own.into_iter().map(|mesh| (mesh, false));
             let meshes = meshes.chain(sheets.iter().map(|mesh| (mesh, true))).zip(0..);
             let bodies = meshes.map(|((mesh, smooth), id)| Body { mesh, id, smooth }).collect();
-            let scene = Scene { bodies, strokes };
+            let scene = Scene { bodies, strokes, ..Scene::default() };
             let Some(window) = camera.window().or_else(|| shown(&scene, &camera, &light)) else {
                 let words = "the picture shows nothing: its shapes are empty or behind the eye";
                 return Err(at(Code::EmptyResult, words, place));

@@ -26,11 +26,13 @@ pub fn add(
     let mut strokes = vec![];
     for shadow in &shadows {
         let id = shadow.body.map_or(free, |body| scene.bodies[body].id);
-        let mut add = |points| strokes.push(Stroke { points, kind: Kind::Shadow, id, round: None });
+        let mut add = |points| {
+            strokes.push(Stroke { points, kind: Kind::Shadow, id, round: None, drawn: vec![] })
+        };
         shadow.rim.iter().for_each(|ends| add(ends.to_vec()));
         hatched(shadow, camera, pitch).into_iter().for_each(add);
     }
-    let scene = Scene { bodies: scene.bodies.clone(), strokes };
+    let scene = Scene { bodies: scene.bodies.clone(), strokes, ..Scene::default() };
     let options = Options { hidden: Hidden::Off, ..*options };
     let seen = visible_lines(&scene, camera, &options);
     drawing.lines.extend(seen.lines.into_iter().filter(|line| line.kind == Kind::Shadow));

@@ -8,7 +8,7 @@ use crate::{
     output::{
         drawing::{
             Body, Camera, Drawing, HeightField, Kind, Options, Scene, Stroke, grid_strokes,
-            horizon_lines, visible_lines,
+            horizon_lines, is_drawn_smooth, visible_lines,
         },
         halftone::Sun,
     },
@@ -52,38 +52,43 @@ impl Subjects<'_> {
         (camera, options): (&Camera, &Options),
     ) {
         let Ok(sun) = Sun::new(cast.toward, 0.0) else { return };
-        let sheets: Vec<PolyMesh> = view.surfaces.iter().map(|s| s.mesh()).collect();
-        let scene = Scene { bodies: self.bodies(&sheets), strokes: vec![] };
+        let numbers = self.solids.len() as u32..;
+        let sheets = view.surfaces.iter().map(|surface| surface.mesh()).zip(numbers);
+        let sheets: Vec<(PolyMesh, u32)> = sheets.collect();
+        let scene = Scene { bodies: self.bodies(&sheets), ..Scene::default() };
         let pitch = style(&view.style).hatch_pitch / 2.0;
         shadows::add(drawing, &scene, camera, options, (&sun, cast.ground, pitch));
     }
 
-    fn bodies<'a>(&'a self, sheets: &'a [PolyMesh]) -> Vec<Body<'a>> {
-        let solids = self.solids.iter().map(|&mesh| (mesh, false));
-        let meshes = solids.chain(sheets.iter().map(|mesh| (mesh, true))).zip(0..);
-        meshes.map(|((mesh, smooth), id)| Body { mesh, id, smooth }).collect()
+    /// The solids and some surfaces, these with their numbers.
+    fn bodies<'a>(&'a self, sheets: &'a [(PolyMesh, u32)]) -> Vec<Body<'a>> {
+        let solids = self.solids.iter().zip(0..).map(|(&mesh, id)| (mesh, id, false));
+        let meshes = solids.chain(sheets.iter().map(|(mesh, id)| (mesh, *id, true)));
+        meshes.map(|(mesh, id, smooth)| Body { mesh, id, smooth }).collect()
     }
 
     fn scene_lines(&self, view: &ViewSpec, camera: &Camera, options: &Options) -> Drawing {
-        let sheets: Vec<PolyMesh> = view.surfaces.iter().map(|s| s.mesh()).collect();
-        let scene = Scene { bodies: self.bodies(&sheets), strokes: self.strokes(view, camera) };
-        visible_lines(&scene, camera, options)
+        let first = self.solids.len() as u32;
+        let surfaces = view.surfaces.iter().map(|s| &**s).zip(first..);
+        let (grids, rough): (Vec<_>, Vec<_>) = surfaces.partition(|s| is_drawn_smooth(s.0));
+        let sheets: Vec<(PolyMesh, u32)> = rough.iter().map(|s| (s.0.mesh(), s.1)).collect();
+        let next = first + view.surfaces.len() as u32;
+        let mut strokes: Vec<Stroke> =
+            rough.into_iter().flat_map(|(grid, id)| grid_strokes(grid, camera, id)).collect();
+        self.add_strokes(next, &mut strokes);
+        let bodies = self.bodies(&sheets);
+        visible_lines(&Scene { bodies, strokes, grids }, camera, options)
     }
 
-    fn strokes(&self, view: &ViewSpec, camera: &Camera) -> Vec<Stroke> {
-        let first = self.solids.len() as u32;
-        let grids = view.surfaces.iter().zip(first..);
-        let mut strokes: Vec<Stroke> =
-            grids.flat_map(|(grid, id)| grid_strokes(grid, camera, id)).collect();
+    /// Adds figures on faces, curves and centre lines, these with numbers from `next` on.
+    fn add_strokes(&self, mut next: u32, strokes: &mut Vec<Stroke>) {
         strokes.extend_from_slice(&self.patterns);
-        let mut next = first + view.surfaces.len() as u32;
         let mut add = |line: &Outline, kind: Kind| {
             let (points, round) = (line.points.clone(), line.round);
-            strokes.push(Stroke { points, kind, id: next, round });
+            strokes.push(Stroke { points, kind, id: next, round, drawn: vec![] });
             next += 1;
         };
         self.free.iter().for_each(|line| add(line, Kind::Free));
         self.axes.iter().for_each(|line| add(&line.to_vec().into(), Kind::Centre));
-        strokes
     }
 }

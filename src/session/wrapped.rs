@@ -1,4 +1,5 @@
-//! Figures laid on round faces: cut at the sides of facets, each part in its facet, so that no face hides what lies in it.
+//! Figures laid on round faces: cut at the sides of facets, each part in its facet, so that no face hides what lies in it,
+//! and drawn where it is on the face itself.
 
 use glam::{DVec2, DVec3};
 
@@ -34,8 +35,18 @@ struct Tile {
 /// A part of a segment on one facet.
 struct Part {
     from: f64,
-    ends: [DVec3; 2],
+    ends: [Laid; 2],
 }
+
+/// A point on its facet and on the surface that this stands for.
+type Laid = [DVec3; 2];
+
+/// A line in space twice: on facets and on their surface.
+pub type Course = (Vec<DVec3>, Vec<DVec3>);
+
+/// A part on one facet is drawn by so many chords: each time the number is doubled they are four times nearer to the
+/// surface.
+const CHORDS: u32 = 4;
 
 impl<'a> Wrapped<'a> {
     /// The facets of a mesh that lie on a surface after a placement. `None` where the placement stretches it.
@@ -55,21 +66,22 @@ impl<'a> Wrapped<'a> {
     }
 
     /// The parts of a line of the xy plane that are on the face, laid on it.
-    pub fn parts(&self, line: &Outline) -> Vec<Vec<DVec3>> {
-        let mut out: Vec<Vec<DVec3>> = vec![];
+    pub fn parts(&self, line: &Outline) -> Vec<Course> {
+        let mut out: Vec<Course> = vec![];
         for ends in line.points.windows(2) {
             let [p, q] = [ends[0].truncate(), ends[1].truncate()];
             let mut parts: Vec<Part> =
                 self.tiles.iter().flat_map(|tile| tile.parts(self.sheet, [p, q])).collect();
             parts.sort_by(|a, b| a.from.total_cmp(&b.from));
             for Part { ends: [from, to], .. } in parts {
-                let [from, to] = [from, to].map(|p| self.onto.point(p));
-                let size = from.abs().max_element().max(1.0);
+                let [from, to] = [from, to].map(|laid| laid.map(|p| self.onto.point(p)));
+                let size = from[0].abs().max_element().max(1.0);
                 match out.last_mut() {
-                    Some(last) if last[last.len() - 1].distance(from) <= JOINED * size => {
-                        last.push(to);
+                    Some(last) if last.0[last.0.len() - 1].distance(from[0]) <= JOINED * size => {
+                        last.0.push(to[0]);
+                        last.1.push(to[1]);
                     }
-                    _ => out.push(vec![from, to]),
+                    _ => out.push((vec![from[0], to[0]], vec![from[1], to[1]])),
                 }
             }
         }
@@ -114,17 +126,21 @@ impl Tile {
         let within = cuts.chunks_exact(2).map(|pair| [pair[0].max(0.0), pair[1].min(1.0)]);
         within
             .filter(|[from, to]| from < to)
-            .map(|[from, to]| {
-                let ends = [from, to].map(|t| self.lay(sheet, p.lerp(q, t)));
-                Part { from, ends }
+            .flat_map(|[from, to]| {
+                let at = move |i: u32| from + (to - from) * f64::from(i) / f64::from(CHORDS);
+                (0..CHORDS).map(move |i| {
+                    let ends = [i, i + 1].map(|k| self.lay(sheet, p.lerp(q, at(k))));
+                    Part { from: at(i), ends }
+                })
             })
             .collect()
     }
 
-    /// A point of the sheet on the facet.
-    fn lay(&self, sheet: &Development, p: DVec2) -> DVec3 {
+    /// A point of the sheet on the facet and on the surface.
+    fn lay(&self, sheet: &Development, p: DVec2) -> Laid {
         let p = sheet.lay(p);
         let normal = sheet.normal(p);
-        p - normal * ((p - self.on).dot(self.normal) / normal.dot(self.normal))
+        let facet = p - normal * ((p - self.on).dot(self.normal) / normal.dot(self.normal));
+        [facet, p]
     }
 }

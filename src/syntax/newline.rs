@@ -22,21 +22,7 @@ const OPEN_ENDED: TokenSet = TokenSet::OPERATORS.or(TokenSet::of(&[
 const CONTINUING: TokenSet = TokenSet::of(&[Token::Dot, Token::Else, Token::And, Token::Or]);
 
 /// Words that begin an item when a name or string follows.
-const ITEM_WORDS: TokenSet = TokenSet::of(&[
-    Token::Part,
-    Token::View,
-    Token::Shade,
-    Token::Sheet,
-    Token::Param,
-    Token::Use,
-    Token::Set,
-    Token::Test,
-    Token::Export,
-    Token::Group,
-    Token::Assert,
-    Token::Pub,
-    Token::Fn,
-]);
+const ITEM_WORDS: TokenSet = TokenSet::ITEMS.or(TokenSet::of(&[Token::Assert, Token::Fn]));
 
 /// So does one that starts with one of these, if no `=` follows.
 const CONTINUING_WORDS: TokenSet =

@@ -291,27 +291,31 @@ impl TokenSet {
     /// No token.
     pub const EMPTY: TokenSet = TokenSet(0);
 
-    /// Names and the words that are names where the grammar takes no keyword.
-    pub const NAMES: TokenSet = TokenSet::of(&[
-        Token::Name,
-        Token::Part,
-        Token::View,
-        Token::Shade,
-        Token::Sheet,
+    /// The words that name what is made.
+    pub const OUTPUTS: TokenSet =
+        TokenSet::of(&[Token::Part, Token::View, Token::Shade, Token::Sheet]);
+
+    /// The words that begin an item and are names elsewhere.
+    pub const ITEMS: TokenSet = TokenSet::OUTPUTS.or(TokenSet::of(&[
         Token::Param,
         Token::Use,
         Token::Set,
         Token::Test,
         Token::Export,
         Token::Group,
-        Token::Assert,
         Token::Pub,
+    ]));
+
+    /// Names and the words that are names where the grammar takes no keyword.
+    pub const NAMES: TokenSet = TokenSet::ITEMS.or(TokenSet::of(&[
+        Token::Name,
+        Token::Assert,
         Token::As,
         Token::With,
         Token::Step,
         Token::When,
         Token::Fails,
-    ]);
+    ]));
 
     /// The words that are never names, but behind a `.`.
     pub const RESERVED: TokenSet = TokenSet::of(&[

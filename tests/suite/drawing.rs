@@ -3,7 +3,10 @@
 mod cases;
 mod edge_on;
 mod figures;
+mod grids;
 mod language;
+mod overdraw;
 mod rays;
 mod scenes;
 mod sights;
+mod solids;

@@ -3,6 +3,8 @@
 //! A facet hides of an edge what lies within its picture and behind its plane. Its sides cut the line of the
 //! edge in an even number of places, between which the edge runs in and out; the plane cuts it once.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::{
@@ -21,6 +23,17 @@ pub struct Clipper<'a> {
     cells: Cells,
     /// Facets of many sides, by strips.
     strips: Vec<Option<Strips>>,
+}
+
+/// A place where an edge runs through a facet.
+#[derive(Clone, Copy, Debug)]
+pub struct Piercing {
+    /// The number of the facet.
+    pub facet: u32,
+    /// The place along the edge.
+    pub at: f64,
+    /// The change of the order: 1 where the edge goes behind the facet.
+    pub by: i32,
 }
 
 /// Facets of more sides than this are kept in strips.
@@ -52,6 +65,17 @@ impl<'a> Clipper<'a> {
 
     /// Appends the spans of an edge.
     pub fn hide(&self, edge: &Edge, desk: &mut Desk, out: &mut Vec<Span>) {
+        self.hide_but(edge, desk, |_| false, out);
+    }
+
+    /// Appends the spans of an edge that some facets do not hide.
+    pub fn hide_but(
+        &self,
+        edge: &Edge,
+        desk: &mut Desk,
+        spared: impl Fn(u32) -> bool,
+        out: &mut Vec<Span>,
+    ) {
         let [p, q] = [edge.a, edge.b].map(|i| self.model.at[i as usize]);
         let line = Scanline::new(p, q);
         let (min, max) = (p.min(q), p.max(q));
@@ -61,7 +85,7 @@ impl<'a> Clipper<'a> {
         self.cells.along(p, q, |i| {
             let facet = &self.model.facets[i as usize];
             let apart = facet.min.cmpgt(max) | min.cmpgt(facet.max);
-            if !apart.any() && sieve.passes(i) {
+            if !apart.any() && sieve.passes(i) && !spared(i) {
                 self.cut(edge, &line, facet, cuts, steps);
             }
         });
@@ -85,6 +109,30 @@ impl<'a> Clipper<'a> {
                 steps.extend([Step { at: from, by: 1 }, Step { at: to, by: -1 }]);
             }
         }
+    }
+
+    /// Where an edge runs through facets, those of a range left out.
+    pub fn piercings(&self, edge: &Edge, own: &Range<usize>) -> Vec<Piercing> {
+        let [p, q] = [edge.a, edge.b].map(|i| self.model.at[i as usize]);
+        let mut found: Vec<Piercing> = vec![];
+        if p == q {
+            return found;
+        }
+        let line = Scanline::new(p, q);
+        self.cells.along(p, q, |i| {
+            let facet = &self.model.facets[i as usize];
+            let [a, b] = self.model.heights(edge, &facet.plane);
+            if own.contains(&(i as usize)) || (a < 0.0) == (b < 0.0) {
+                return;
+            }
+            let at = a / (a - b);
+            if self.winding(facet, &line, at) != 0 {
+                found.push(Piercing { facet: i, at, by: if b < 0.0 { 1 } else { -1 } });
+            }
+        });
+        found.sort_unstable_by_key(|f| f.facet);
+        found.dedup_by_key(|f| f.facet);
+        found
     }
 
     /// How many facets are in front of an edge at t; the edge runs along `line`. `on` is the true point there if the

@@ -15,7 +15,8 @@ use glam::DVec3;
 use super::{
     cells::{Cells, Extent, Sieve},
     chain::Chord,
-    clip::Clipper,
+    clip::{Clipper, Piercing},
+    field::{Constraint, Field},
     lattice::{Scanline, Sighted},
     links::NONE,
     meet::{Strand, meet, nearer},
@@ -161,9 +162,34 @@ impl<'a> Counter<'a> {
                 }
             });
         }
+        self.add_piercings(chain, &mut turns);
         self.settle_ends(chain, &mut turns);
         turns.sort_unstable_by(|a, b| a.at.total_cmp(&b.at));
         self.stretches(chain, &turns, layered)
+    }
+
+    /// Adds the turns where a chain runs through faces of other bodies that reach into its own.
+    fn add_piercings(&self, chain: &[Chord], turns: &mut Vec<Turn>) {
+        let model = self.model;
+        let first = chain[0].edge as usize;
+        let hull = model.hulls.iter().find(|h| h.edges.contains(&first));
+        let Some(hull) = hull.filter(|h| h.reached) else { return };
+        for (number, chord) in chain.iter().enumerate() {
+            let [a, b] = chord.ends;
+            let edge = Edge { a, b, ..model.edges[chord.edge as usize] };
+            for Piercing { at, by, facet } in self.clipper.piercings(&edge, &hull.facets) {
+                let facet = &model.facets[facet as usize];
+                let field = model.fields.get(facet.field as usize).copied();
+                let surface = Constraint::On(field.unwrap_or(Field::Flat(facet.plane)));
+                let strand = Strand::new(model, edge.curve, chord.ends);
+                let start = strand.at(&model.camera, model.place_in_space(chord.ends, at));
+                let reach = model.space[a as usize].distance(model.space[b as usize]);
+                let curve = model.curves.get(edge.curve as usize);
+                let point = curve.and_then(|c| c.meeting(surface, &model.camera, start, reach));
+                let point = point.unwrap_or(start);
+                turns.push(Turn { at: number as f64 + strand.place(point), by, point });
+            }
+        }
     }
 
     /// Brings turns that are beyond an end of the chain to the other end, if it is closed, or to that end.

@@ -16,9 +16,11 @@ use super::{
 
 /// A point of a curve in the picture, and the unit tangent there.
 #[derive(Clone, Copy, Debug)]
-struct Node {
-    at: DVec2,
-    tangent: DVec2,
+pub struct Node {
+    /// The point, mm.
+    pub at: DVec2,
+    /// The unit tangent.
+    pub tangent: DVec2,
 }
 
 /// Images that move slower than this part of the curve itself are at a cusp: their direction is rounding.
@@ -103,32 +105,7 @@ impl<'a> Fitted<'a> {
         if let Some(ellipse) = &self.ellipse {
             return found(self.arc(ellipse, stretch, &points));
         }
-        let mut from = 0;
-        while from + 1 < nodes.len() {
-            let (to, straight) = self.run(&points, from);
-            found(if straight {
-                Shape::Straight(points[from], points[to])
-            } else {
-                Shape::Curve(cubics(&nodes[from..=to], self.tolerance * LOOSE))
-            });
-            from = to;
-        }
-    }
-
-    /// How far the curve goes on from a node without changing between straight and bent.
-    fn run(&self, points: &[DVec2], from: usize) -> (usize, bool) {
-        let bent =
-            |i: usize| i + 2 < points.len() && !is_straight(&points[i..i + 3], self.tolerance);
-        let last = points.len() - 1;
-        if from + 2 > last || bent(from) {
-            let to = (from + 1..last).find(|&i| i + 3 < last && !bent(i) && !bent(i + 1));
-            return (to.unwrap_or(last), false);
-        }
-        let mut to = from + 2;
-        while to < last && is_straight(&points[from..=to + 1], self.tolerance) {
-            to += 1;
-        }
-        (to, true)
+        runs(&nodes, self.tolerance, found);
     }
 
     /// The nodes of a part of the chain.
@@ -170,6 +147,53 @@ impl<'a> Fitted<'a> {
             Shape::Arc(*ellipse, e, e + after(e, s))
         }
     }
+}
+
+/// Calls with the shapes of a smooth line through nodes: straight runs and curves.
+fn runs(nodes: &[Node], tolerance: f64, mut found: impl FnMut(Shape)) {
+    let points: Vec<DVec2> = nodes.iter().map(|n| n.at).collect();
+    let mut from = 0;
+    while from + 1 < nodes.len() {
+        let (to, straight) = run(&points, from, tolerance);
+        found(if straight {
+            Shape::Straight(points[from], points[to])
+        } else {
+            Shape::Curve(cubics(&nodes[from..=to], tolerance * LOOSE))
+        });
+        from = to;
+    }
+}
+
+/// How far a line goes on from a point without changing between straight and bent.
+fn run(points: &[DVec2], from: usize, tolerance: f64) -> (usize, bool) {
+    let bent = |i: usize| i + 2 < points.len() && !is_straight(&points[i..i + 3], tolerance);
+    let last = points.len() - 1;
+    if from + 2 > last || bent(from) {
+        let to = (from + 1..last).find(|&i| i + 3 < last && !bent(i) && !bent(i + 1));
+        return (to.unwrap_or(last), false);
+    }
+    let mut to = from + 2;
+    while to < last && is_straight(&points[from..=to + 1], tolerance) {
+        to += 1;
+    }
+    (to, true)
+}
+
+/// Calls with the shapes of a smooth line through nodes; one that is straight all along is one piece.
+pub fn through(nodes: &[Node], tolerance: f64, mut found: impl FnMut(Shape)) {
+    let mut nodes = nodes.to_vec();
+    nodes.dedup_by(|b, a| a.at.distance(b.at) <= tolerance);
+    if nodes.len() < 2 {
+        return;
+    }
+    let points: Vec<DVec2> = nodes.iter().map(|n| n.at).collect();
+    let (low, high) = extremes(&points);
+    let along = high - low;
+    let level = nodes.iter().all(|n| n.tangent.perp_dot(along).abs() <= tolerance);
+    if level && is_straight(&points, tolerance) {
+        return found(Shape::Straight(low, high));
+    }
+    runs(&nodes, tolerance, found);
 }
 
 /// Gives a node at a cusp the direction of the chord to its neighbour.
@@ -221,7 +245,7 @@ fn cubics(nodes: &[Node], tolerance: f64) -> Path {
 }
 
 /// The cubic between two nodes that is right to the sixth order for a circle.
-fn cubic(a: &Node, b: &Node) -> Segment {
+pub fn cubic(a: &Node, b: &Node) -> Segment {
     let chord = b.at - a.at;
     let length = chord.length();
     let handle = |tangent: DVec2| {

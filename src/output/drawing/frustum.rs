@@ -39,7 +39,8 @@ impl Visible<'_> {
 /// Coordinates up to this, mm, can be squared and multiplied on; what reaches farther is left out.
 const FARTHEST: f64 = 1e60;
 
-fn is_near(p: &DVec3) -> bool {
+/// Whether a point is near enough to count with.
+pub fn is_near(p: &DVec3) -> bool {
     p.is_finite() && p.abs().max_element() <= FARTHEST
 }
 
@@ -88,7 +89,7 @@ fn cut_mesh(mesh: &PolyMesh, camera: &Camera) -> PolyMesh {
     for face in mesh.faces() {
         let loops: Vec<Vec<u32>> = face
             .loops()
-            .map(|corners| cut_loop(&mut out, camera, corners, &mut passages))
+            .map(|corners| cut_loop(&mut out.points, camera, corners, &mut passages))
             .filter(|corners| corners.len() >= 3)
             .collect();
         if !loops.is_empty() {
@@ -98,9 +99,9 @@ fn cut_mesh(mesh: &PolyMesh, camera: &Camera) -> PolyMesh {
     out
 }
 
-/// A loop without what is behind (Sutherland and Hodgman).
-fn cut_loop(
-    out: &mut PolyMesh,
+/// A loop without what is behind (Sutherland and Hodgman); passages between two points are added once.
+pub fn cut_loop(
+    points: &mut Vec<DVec3>,
     camera: &Camera,
     corners: &[u32],
     passages: &mut FxHashMap<(u32, u32), u32>,
@@ -108,14 +109,14 @@ fn cut_loop(
     let mut kept = vec![];
     let mut before = corners[corners.len() - 1];
     for &corner in corners {
-        let [p, q] = [before, corner].map(|c| out.points[c as usize]);
+        let [p, q] = [before, corner].map(|c| points[c as usize]);
         let (was, is) = (camera.ahead(p) >= 0.0, camera.ahead(q) >= 0.0);
         if was != is {
             let key = (before.min(corner), before.max(corner));
             let at = *passages.entry(key).or_insert_with(|| {
-                let [p, q] = [key.0, key.1].map(|c| out.points[c as usize]);
-                out.points.push(passage(camera, p, q));
-                out.points.len() as u32 - 1
+                let [p, q] = [key.0, key.1].map(|c| points[c as usize]);
+                points.push(passage(camera, p, q));
+                points.len() as u32 - 1
             });
             kept.push(at);
         }
@@ -145,7 +146,9 @@ fn cut_stroke(stroke: &Stroke, camera: &Camera) -> Vec<Stroke> {
     }
     parts.retain(|points| points.len() > 1);
     let round = stroke.round.filter(|_| whole);
-    parts.into_iter().rev().map(|points| Stroke { points, round, ..*stroke }).collect()
+    let drawn = || if whole { stroke.drawn.clone() } else { vec![] };
+    let parts = parts.into_iter().rev();
+    parts.map(|points| Stroke { points, round, drawn: drawn(), ..*stroke }).collect()
 }
 
 /// Places on a curved line that are looked at for where it passes the border of a window.
@@ -243,7 +246,10 @@ mod tests {
     fn strokes_are_cut_before_the_eye() {
         let camera = Camera::perspective(DVec3::X * 10.0, DVec3::ZERO).expect("apart");
         let points = [0.0, 20.0, 0.0].map(|x| DVec3::new(x, x / 4.0, 0.0)).to_vec();
-        let parts = cut_stroke(&Stroke { points, kind: Kind::Free, id: 3, round: None }, &camera);
+        let parts = cut_stroke(
+            &Stroke { points, kind: Kind::Free, id: 3, round: None, drawn: vec![] },
+            &camera,
+        );
         assert_eq!(parts.iter().map(|p| p.points.len()).collect::<Vec<_>>(), [2, 2]);
         assert!((parts[0].points[1].x - 9.9).abs() < 1e-12);
         assert_eq!(parts[0].points[1], parts[1].points[0]);

@@ -42,9 +42,32 @@ fn slope(d: DVec2) -> f64 {
     if s < TURN - 1.0 { s + 2.0 } else { s }
 }
 
-/// The pieces without overlaps: pieces that lie on one line within `tolerance` mm are cut at each other's
+/// How near to each other lines coincide.
+#[derive(Clone, Debug)]
+pub struct Nearness {
+    /// Distance, mm.
+    pub tolerance: f64,
+    /// The larger distance of lines of the bodies `rough`, mm.
+    pub loose: f64,
+    /// Numbers of bodies whose faces are not exact, in order.
+    pub rough: Vec<u32>,
+}
+
+impl Nearness {
+    /// How near two pieces coincide.
+    fn between(&self, a: &Piece, b: &Piece) -> f64 {
+        let rough = |p: &Piece| self.rough.binary_search(&p.mark.id).is_ok();
+        if !self.rough.is_empty() && rough(a) && rough(b) { self.loose } else { self.tolerance }
+    }
+
+    fn most(&self) -> f64 {
+        if self.rough.is_empty() { self.tolerance } else { self.loose }
+    }
+}
+
+/// The pieces without overlaps: pieces that lie on one line, nearly, are cut at each other's
 /// ends, the most important is kept of each part, and equal neighbours are joined.
-pub fn merged(pieces: &[Piece], tolerance: f64) -> Vec<Piece> {
+pub fn merged(pieces: &[Piece], tolerance: &Nearness) -> Vec<Piece> {
     let mut order: Vec<(f64, u32)> =
         pieces.iter().zip(0..).map(|(p, i)| (slope(p.to - p.from), i)).collect();
     order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -72,7 +95,12 @@ fn each_direction(order: &[(f64, u32)], turn: f64, found: &mut impl FnMut(&[(f64
 }
 
 /// Merges pieces of nearly one direction.
-fn merge_parallel(pieces: &[Piece], parallel: &[(f64, u32)], tolerance: f64, out: &mut Vec<Piece>) {
+fn merge_parallel(
+    pieces: &[Piece],
+    parallel: &[(f64, u32)],
+    tolerance: &Nearness,
+    out: &mut Vec<Piece>,
+) {
     if let &[(_, only)] = parallel {
         return out.push(pieces[only as usize]);
     }
@@ -104,12 +132,13 @@ fn length_squared(p: &Piece) -> f64 {
 }
 
 /// Groups of pieces on one line.
-fn lines(pieces: &[Piece], bands: &[(f64, f64, u32)], tolerance: f64) -> Vec<Vec<u32>> {
+fn lines(pieces: &[Piece], bands: &[(f64, f64, u32)], tolerance: &Nearness) -> Vec<Vec<u32>> {
     let mut group: Vec<usize> = (0..bands.len()).collect();
     for (i, &(_, high, one)) in bands.iter().enumerate() {
-        let near = bands[i + 1..].iter().take_while(|b| b.0 <= high + tolerance);
+        let near = bands[i + 1..].iter().take_while(|b| b.0 <= high + tolerance.most());
         for (k, &(.., other)) in near.enumerate() {
-            if coincide(&pieces[one as usize], &pieces[other as usize], tolerance) {
+            let (p, q) = (&pieces[one as usize], &pieces[other as usize]);
+            if coincide(p, q, tolerance.between(p, q)) {
                 let (a, b) = (root(&mut group, i), root(&mut group, i + 1 + k));
                 group[a.max(b)] = a.min(b);
             }
@@ -155,13 +184,21 @@ fn merge_line(pieces: &[Piece], group: &[u32], out: &mut Vec<Piece>) {
         events.extend([(s.min(t), false, i), (s.max(t), true, i)]);
     }
     events.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
-    let mut run = Run { base, along, from: 0.0, to: 0.0, best: None };
+    // Lines end where they ended before, to the bit, so that they go on into others.
+    let end = |(_, ends, i): (f64, bool, u32)| {
+        let Piece { from, to, .. } = pieces[i as usize];
+        if (along.dot(to - from) > 0.0) == ends { to } else { from }
+    };
+    let mut run = Run { from: base, to: base, best: None };
     let mut active: Vec<u32> = vec![];
-    let mut before = f64::NEG_INFINITY;
-    for (at, ends, i) in events {
-        if at > before {
-            run.go_on(before, at, run.best_of(active.iter().map(|&k| &pieces[k as usize])), out);
-            before = at;
+    let mut before = (f64::NEG_INFINITY, base);
+    for event in events {
+        let (at, ends, i) = event;
+        if at > before.0 {
+            let best = run.best_of(active.iter().map(|&k| &pieces[k as usize]));
+            let here = end(event);
+            run.go_on(before.1, here, best, out);
+            before = (at, here);
         }
         if ends { active.retain(|&k| k != i) } else { active.push(i) }
     }
@@ -174,10 +211,8 @@ fn by_length(a: &&Piece, b: &&Piece) -> Ordering {
 
 /// The piece that is being lengthened on a line.
 struct Run<'a> {
-    base: DVec2,
-    along: DVec2,
-    from: f64,
-    to: f64,
+    from: DVec2,
+    to: DVec2,
     best: Option<&'a Piece>,
 }
 
@@ -192,7 +227,7 @@ impl<'a> Run<'a> {
     }
 
     /// Lengthens the piece up to a place, or begins another one.
-    fn go_on(&mut self, from: f64, to: f64, best: Option<&'a Piece>, out: &mut Vec<Piece>) {
+    fn go_on(&mut self, from: DVec2, to: DVec2, best: Option<&'a Piece>, out: &mut Vec<Piece>) {
         let same = match (self.best, best) {
             (Some(a), Some(b)) => a.mark == b.mark,
             (None, None) => true,
@@ -208,8 +243,7 @@ impl<'a> Run<'a> {
     /// Gives the piece away.
     fn finish(&mut self, out: &mut Vec<Piece>) {
         if let Some(best) = self.best.take() {
-            let [from, to] = [self.from, self.to].map(|t| self.base + self.along * t);
-            out.push(Piece { from, to, ..*best });
+            out.push(Piece { from: self.from, to: self.to, ..*best });
         }
     }
 }
@@ -219,6 +253,8 @@ mod tests {
     use glam::dvec2;
 
     use super::*;
+
+    const NEAR: Nearness = Nearness { tolerance: 1e-9, loose: 1e-6, rough: vec![] };
 
     fn piece(from: [f64; 2], to: [f64; 2], class: Class) -> Piece {
         let order = u32::from(class == Class::Hidden);
@@ -240,7 +276,7 @@ mod tests {
                 piece(at(5.0), at(7.0), Class::Visible),
                 piece(at(-5.0), at(20.0), Class::Centre),
             ];
-            let out = merged(&all, 1e-9);
+            let out = merged(&all, &NEAR);
             assert!((length(&out, Class::Visible) - 5.0).abs() < 1e-12);
             assert!((length(&out, Class::Hidden) - 5.0).abs() < 1e-12);
             assert!((length(&out, Class::Centre) - 15.0).abs() < 1e-12);
@@ -252,7 +288,7 @@ mod tests {
     fn what_is_drawn_alike_stays_whole() {
         let mut all = [0.0, 4.0].map(|x| piece([x, 0.0], [10.0 - x, 0.0], Class::Visible));
         all[0].mark.kind = Kind::Contour;
-        let out = merged(&all, 1e-9);
+        let out = merged(&all, &NEAR);
         assert_eq!((out.len(), length(&out, Class::Visible)), (1, 10.0));
     }
 
@@ -264,7 +300,7 @@ mod tests {
             piece([2.0, 0.0], [3.0, 0.0], Class::Visible),
             piece([1.0, 0.0], [2.0, 1e-12], Class::Visible),
         ];
-        let out = merged(&all, 1e-9);
+        let out = merged(&all, &NEAR);
         assert_eq!(out.len(), 2);
         assert!((length(&out, Class::Visible) - 4.0).abs() < 1e-9);
     }

@@ -57,6 +57,7 @@ mod drawing;
 mod envelope;
 mod field;
 mod fit;
+mod folded;
 mod frustum;
 mod horizon;
 mod join;
@@ -67,15 +68,18 @@ mod merge;
 mod model;
 mod outline;
 mod patches;
+mod pieces;
 mod round;
 mod scene;
 mod smooth;
 mod span;
+mod spline;
 mod strips;
+mod thread;
 
 pub use crate::geom::{Hidden, Method, View};
 pub use camera::{Camera, CameraError, Window};
-pub use curved_grid::{grid_lines, grid_strokes};
+pub use curved_grid::{grid_lines, grid_strokes, is_drawn_smooth};
 pub use drawing::{Class, Drawing, Line, Path, Segment};
 pub use horizon::{HeightField, HorizonError, horizon_lines};
 pub use outline::true_outlines;
@@ -90,7 +94,7 @@ use convex::Bodies;
 use count::Counter;
 use fit::{Fitted, Shape};
 use links::NONE;
-use merge::{Mark, Piece};
+use merge::{Mark, Nearness, Piece};
 use model::{Edge, Model};
 use span::Span;
 
@@ -99,12 +103,13 @@ use span::Span;
 const COINCIDENT: f64 = 1e-8;
 
 /// Cubic curves are so much farther from the true curve than lines that coincide from each other: they only have to
-/// look right and be as long, and each digit costs half as many pieces again.
+/// look right and be as long, and each digit costs half as many pieces again. Straight lines of a body whose faces are
+/// not exact are drawn once if they are so near: its walls are off by that where they are seen edge-on.
 const LOOSE: f64 = 100.0;
 
 /// A line that is not so many times as long as coincident lines are apart is a dot: an edge seen end-on, or what rounding
 /// leaves of a line beside the end of another.
-const DOT: f64 = 16.0;
+const DOT: f64 = 200.0;
 
 /// The lines of a scene that an eye sees, and those it would see but for what is in front.
 ///
@@ -114,7 +119,7 @@ const DOT: f64 = 16.0;
 pub fn visible_lines(scene: &Scene, camera: &Camera, options: &Options) -> Drawing {
     let model = Model::new(scene, camera, options);
     let layered = matches!(options.hidden, Hidden::Depth(_));
-    let mut sheet = Sheet { layered, ..Sheet::default() };
+    let mut sheet = Sheet { layered, rough: scene.rough(), ..Sheet::default() };
     hide(&model, options.method, &mut sheet);
     if let Some(window) = camera.window() {
         sheet.cut(&window);
@@ -130,6 +135,8 @@ struct Sheet {
     straight: Vec<Piece>,
     arcs: Vec<ArcPiece>,
     curves: Vec<(Path, Mark)>,
+    /// Numbers of bodies whose faces are not exact, in order.
+    rough: Vec<u32>,
 }
 
 /// Puts all edges on the sheet.
@@ -171,6 +178,7 @@ fn hide(model: &Model, method: Method, sheet: &mut Sheet) {
     }
     sheet.add_edges(model, from..strokes.end, |edge, out| clipper.hide(edge, &mut desk, out));
     hide_chains(model, &counter, sheet);
+    hide_threads(model, &clipper, sheet);
 }
 
 /// Puts the edges of convex bodies on the sheet.
@@ -199,7 +207,8 @@ fn agree(
     other(edge, &mut found);
     let [p, q] = [edge.a, edge.b].map(|i| model.at[i as usize]);
     let gap = (visible(spans) - visible(&found)).abs() * p.distance(q);
-    !model.fields.is_empty() || gap <= model.dust * DISPUTED
+    let curved = !model.fields.is_empty() || !model.threads.is_empty();
+    curved || gap <= model.dust * DISPUTED
 }
 
 /// Two methods may differ by so many lengths of dust: where an edge lies in the plane of a face, one stops at the
@@ -227,15 +236,37 @@ fn hide_chains(model: &Model, counter: &Counter, sheet: &mut Sheet) {
     drawn.into_iter().flatten().for_each(|(shape, mark)| sheet.add_shape(shape, mark));
 }
 
+/// Puts the lines of curved grids on the sheet.
+fn hide_threads(model: &Model, clipper: &Clipper, sheet: &mut Sheet) {
+    let tolerance = model.picture_size() * COINCIDENT;
+    let drawn = model.threads.par_iter().map_init(
+        || clipper.desk(),
+        |desk, thread| {
+            let mut shapes = vec![];
+            thread.hide(model, clipper, desk, sheet.layered, tolerance, |order, shape| {
+                shapes.push((shape, mark_of(thread.kind, thread.id, order)));
+            });
+            shapes
+        },
+    );
+    let drawn: Vec<Vec<(Shape, Mark)>> = drawn.collect();
+    drawn.into_iter().flatten().for_each(|(shape, mark)| sheet.add_shape(shape, mark));
+}
+
 /// How a part of an edge behind so many faces is drawn.
 fn mark(edge: &Edge, order: u32) -> Mark {
-    let class = match edge.kind {
+    mark_of(edge.kind, edge.id, order)
+}
+
+/// How a part of a line behind so many faces is drawn.
+fn mark_of(kind: Kind, id: u32, order: u32) -> Mark {
+    let class = match kind {
         Kind::Cutting => Class::Cutting,
         Kind::Centre => Class::Centre,
         _ if order == 0 => Class::Visible,
         _ => Class::Hidden,
     };
-    Mark { class, order, kind: edge.kind, id: edge.id }
+    Mark { class, order, kind, id }
 }
 
 impl Sheet {
@@ -247,22 +278,28 @@ impl Sheet {
         mut hide: impl FnMut(&Edge, &mut Vec<Span>),
     ) {
         let mut spans = vec![];
-        for edge in &model.edges[range] {
+        for number in range {
+            let edge = &model.edges[number];
             if edge.curve == NONE && model.at[edge.a as usize] != model.at[edge.b as usize] {
                 spans.clear();
                 hide(edge, &mut spans);
                 if !self.layered {
                     span::unite(&mut spans);
                 }
-                self.add_spans(model, edge, &spans);
+                self.add_spans(model, number, &spans);
             }
         }
     }
 
     /// Adds the parts of a straight edge.
-    fn add_spans(&mut self, model: &Model, edge: &Edge, spans: &[Span]) {
+    fn add_spans(&mut self, model: &Model, number: usize, spans: &[Span]) {
+        let edge = &model.edges[number];
         let [p, q] = [edge.a, edge.b].map(|i| model.at[i as usize]);
-        let place = |t: f64| model.lattice.millimetres(p + (q - p) * t);
+        let moved = model.moved.get(&number);
+        let place = |t: f64| match moved {
+            Some([p, q]) => p.lerp(*q, t),
+            None => model.lattice.millimetres(p + (q - p) * t),
+        };
         for span in spans {
             let (from, to) = (place(span.from), place(span.to));
             self.straight.push(Piece { from, to, mark: mark(edge, span.order) });
@@ -298,7 +335,9 @@ impl Sheet {
 
     /// Merges what coincides within `tolerance` mm, measures, and keeps what is wanted, joined to paths.
     fn assemble(self, tolerance: f64, hidden: Hidden) -> Drawing {
-        let straight = merge::merged(&self.straight, tolerance)
+        let loose = tolerance * LOOSE;
+        let near = Nearness { tolerance, loose, rough: self.rough };
+        let straight = merge::merged(&self.straight, &near)
             .into_iter()
             .map(|p| (Path::of(p.from, Segment::Line { to: p.to }), p.mark));
         let arcs = arcs::merged(&self.arcs, tolerance).into_iter().map(|a| {
@@ -307,7 +346,7 @@ impl Sheet {
             (Path::of(a.ellipse.at(a.from), arc), a.mark)
         });
         let all: Vec<(Path, Mark)> =
-            straight.chain(arcs).chain(curves::merged(self.curves, tolerance * LOOSE)).collect();
+            straight.chain(arcs).chain(curves::merged(self.curves, loose)).collect();
         let length = |class: Class| {
             let of = all.iter().filter(|(_, mark)| mark.class == class);
             of.map(|(path, _)| path.length()).sum::<f64>()

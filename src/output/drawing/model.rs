@@ -3,18 +3,22 @@
 use std::ops::Range;
 
 use glam::{DVec2, DVec3};
+use rustc_hash::FxHashMap;
 
 use super::{
     Camera,
     cells::around,
     field::{Curve, Field},
-    frustum::{Visible, before_eye},
+    folded::Folded,
+    frustum::{Visible, before_eye, is_near},
     lattice::{Lattice, Plane},
     links::{self, Link, NONE, links},
     patches::faithful_origins,
+    pieces::{Homes, Sides},
     round::Bow,
     scene::{Kind, Options, Scene, Stroke},
     smooth,
+    thread::{Thread, threads},
 };
 use crate::geom::{Bounds, FaceRef, PolyMesh, Surface, bvh::Bvh};
 
@@ -31,6 +35,9 @@ const EDGE_ON: f64 = 1e-6;
 
 /// Faces narrower than so many times the size of contact have no normal that tells how they are seen.
 const WIDE: f64 = 1e4;
+
+/// What is magnified more than this is behind the plane before the eye in which the picture ends.
+const MOST_MAGNIFIED: f64 = 200.0;
 
 /// Chords are this part of the modeller's tolerance off their curve at most.
 pub const CHORD: f64 = 0.25;
@@ -142,6 +149,12 @@ pub struct Model {
     pub cusps: Vec<u32>,
     /// Strokes that are arcs.
     pub bows: Vec<Bow>,
+    /// Ends of edges that are drawn elsewhere than they are hidden, by their number, mm.
+    pub moved: FxHashMap<usize, [DVec2; 2]>,
+    /// Lines on curved grids.
+    pub threads: Vec<Thread>,
+    /// Where the facets of curved grids come from.
+    pub homes: Homes,
     /// The camera.
     pub camera: Camera,
     /// Picture to lattice.
@@ -168,7 +181,8 @@ impl Model {
     /// The model of what is before the eye.
     pub fn new(scene: &Scene, camera: &Camera, options: &Options) -> Model {
         let (bodies, strokes) = before_eye(scene, camera, options.crease);
-        let mut model = Model::placed(&bodies, &strokes, camera, options);
+        let grids = folded_grids(scene, camera, options);
+        let mut model = Model::placed(&bodies, &strokes, &grids, camera, options);
         let mut base = 0;
         for body in &bodies {
             let starts = [model.facets.len(), model.outlines.len(), model.edges.len()];
@@ -181,6 +195,8 @@ impl Model {
             model.add_hull(base as usize..end as usize, starts, convex);
             base = end;
         }
+        let lines: u32 = strokes.iter().map(|s| s.points.len() as u32).sum();
+        model.add_grids(grids, base + lines);
         model.mark_reached();
         for stroke in &strokes {
             let corners = base..base + stroke.points.len() as u32;
@@ -197,16 +213,30 @@ impl Model {
                 });
             }
             base += stroke.points.len() as u32;
+            let images: Vec<DVec2> = stroke.drawn.iter().map(|p| camera.image(*p).0).collect();
+            let ends = images.windows(2).map(|pair| [pair[0], pair[1]]);
+            model.moved.extend((first..).zip(ends));
         }
         model
     }
 
     /// All points in space and on the lattice.
-    fn placed(bodies: &[Visible], strokes: &[Stroke], camera: &Camera, options: &Options) -> Model {
+    fn placed(
+        bodies: &[Visible],
+        strokes: &[Stroke],
+        grids: &[(Folded, u32)],
+        camera: &Camera,
+        options: &Options,
+    ) -> Model {
         let corners = bodies.iter().flat_map(|b| &b.mesh.points);
         let ends = strokes.iter().flat_map(|s| &s.points);
-        let before = |p: &DVec3| if camera.ahead(*p) < 0.0 { camera.target() } else { *p };
-        let space: Vec<DVec3> = corners.chain(ends).map(before).collect();
+        // Points of the cut before the eye are a rounding error behind it.
+        let before = |p: &DVec3| {
+            let seen = (0.0..MOST_MAGNIFIED).contains(&camera.magnification(*p));
+            if seen { *p } else { camera.target() }
+        };
+        let knots = grids.iter().flat_map(|g| &g.0.points);
+        let space: Vec<DVec3> = corners.chain(ends).chain(knots).map(before).collect();
         let images: Vec<(DVec2, f64)> = space.iter().map(|p| camera.image(*p)).collect();
         let (min, max) = around(images.iter().map(|i| i.0));
         let lattice = Lattice::around(min, max);
@@ -224,11 +254,26 @@ impl Model {
             curves: vec![],
             cusps: vec![],
             bows: vec![],
+            moved: FxHashMap::default(),
+            threads: vec![],
+            homes: Homes::default(),
             camera: *camera,
             lattice,
             contact: size * CONTACT,
             bound: options.tolerance.mm() * CHORD,
             dust: lattice.steps((max - min).max_element().max(0.0)) * DUST,
+        }
+    }
+
+    /// Adds curved grids, whose points begin at a number.
+    fn add_grids(&mut self, grids: Vec<(Folded, u32)>, mut base: u32) {
+        self.homes.first = self.facets.len();
+        for (mut folded, id) in grids {
+            let sides = Sides::of(&folded.pieces);
+            let starts = [base, self.homes.triangles.len() as u32];
+            self.add_folded(&folded, &sides, base);
+            base += folded.points.len() as u32;
+            self.threads.extend(threads(&mut folded, &sides, id, starts));
         }
     }
 
@@ -421,6 +466,17 @@ impl Model {
             if height.abs() <= self.contact { 0.0 } else { height * self.gain[p as usize] }
         })
     }
+}
+
+/// The grids of a scene as the eye has them; those that reach too far are left out.
+fn folded_grids<'a>(
+    scene: &Scene<'a>,
+    camera: &'a Camera,
+    options: &Options,
+) -> Vec<(Folded<'a>, u32)> {
+    let bound = options.tolerance.mm() * CHORD;
+    let near = scene.grids.iter().filter(|(grid, _)| grid.points().iter().all(is_near));
+    near.map(|&(grid, id)| (Folded::new(grid, camera, bound), id)).collect()
 }
 
 /// What an edge is drawn as; `None` when it only parts facets of one surface.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::round::Round;
-use crate::geom::{Hidden, Method, PolyMesh, Tolerance};
+use crate::geom::{CurvedGrid, Hidden, Method, Origin, PolyMesh, Surface, Tolerance};
 
 /// A solid, or an open surface when its mesh has borders; both sides of an open one hide.
 #[derive(Clone, Copy, Debug)]
@@ -28,6 +28,9 @@ pub struct Stroke {
     pub id: u32,
     /// The circle or ellipse that all its corners lie on, in their order, if it stands for an arc.
     pub round: Option<Round>,
+    /// Where its corners are drawn, millimetres, if not where they are hidden: figures lie on facets and are drawn on the
+    /// round face that these stand for. Empty otherwise.
+    pub drawn: Vec<DVec3>,
 }
 
 /// What a line stands for.
@@ -62,6 +65,8 @@ pub struct Scene<'a> {
     pub bodies: Vec<Body<'a>>,
     /// Figures on faces and free lines.
     pub strokes: Vec<Stroke>,
+    /// Smooth surfaces through points, drawn by their grid lines and contours, each with the caller's number for it.
+    pub grids: Vec<(&'a CurvedGrid, u32)>,
 }
 
 impl<'a> Scene<'a> {
@@ -72,7 +77,18 @@ impl<'a> Scene<'a> {
             .zip(0..)
             .map(|(mesh, id)| Body { mesh, id, smooth: false })
             .collect();
-        Scene { bodies, strokes: vec![] }
+        Scene { bodies, ..Scene::default() }
+    }
+}
+
+impl Scene<'_> {
+    /// Numbers of bodies with faces that are not flat, in order: their corners need not be exact.
+    pub(super) fn rough(&self) -> Vec<u32> {
+        let bent = |o: &Origin| o.surface != Surface::Plane;
+        let rough = self.bodies.iter().filter(|b| b.mesh.origins().iter().any(bent));
+        let mut numbers: Vec<u32> = rough.map(|b| b.id).collect();
+        numbers.sort_unstable();
+        numbers
     }
 }
 

@@ -88,20 +88,7 @@ impl<'s> Items<'s> {
     /// item = DOC NL item | use | param | group | set | output | export | test
     ///      | "pub" NAME [":" type] "=" expr | "pub" fn | stmt
     fn kind(&self, input: &mut Reader<'s, '_>) -> Option<ItemKind> {
-        const WORDS: TokenSet = TokenSet::of(&[
-            Token::Use,
-            Token::Param,
-            Token::Group,
-            Token::Set,
-            Token::Part,
-            Token::View,
-            Token::Shade,
-            Token::Sheet,
-            Token::Export,
-            Token::Test,
-            Token::Pub,
-        ]);
-        if input.peek().is_some_and(|token| WORDS.has(token))
+        if input.peek().is_some_and(|token| TokenSet::ITEMS.has(token))
             && let Some(kind) = run(input, &self.worded)
         {
             return Some(kind);
@@ -156,9 +143,8 @@ fn set<'s>(expr: impl Parse<'s, Expr>) -> Boxed<'s, ItemKind> {
 
 /// output = ["pub"] ("part" | "view" | "shade" | "sheet") NAME "=" expr
 fn output<'s>(expr: impl Parse<'s, Expr>) -> Boxed<'s, Output> {
-    const KINDS: TokenSet = TokenSet::of(&[Token::Part, Token::View, Token::Shade, Token::Sheet]);
     let public = token(Token::Pub).or_not().map(|word| word.is_some());
-    let head = public.then(take(KINDS)).then(name()).then_ignore(token(Token::Assign));
+    let head = public.then(take(TokenSet::OUTPUTS)).then(name()).then_ignore(token(Token::Assign));
     let parser = head.then(expr).map(|(((public, kind), name), value)| {
         let kind = match kind {
             Token::Part => OutputKind::Part,

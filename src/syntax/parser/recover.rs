@@ -85,14 +85,7 @@ fn named_error(state: &mut State<'_>, tokens: &[Token], start: usize, end: usize
 
 /// Which token of a statement is the name that it defines.
 fn defined(tokens: &[Token]) -> Option<usize> {
-    const HEADS: TokenSet = TokenSet::of(&[
-        Token::Part,
-        Token::View,
-        Token::Shade,
-        Token::Sheet,
-        Token::Param,
-        Token::Fn,
-    ]);
+    const HEADS: TokenSet = TokenSet::OUTPUTS.or(TokenSet::of(&[Token::Param, Token::Fn]));
     let is_name = |at: usize| tokens.get(at).is_some_and(|t| TokenSet::NAMES.has(*t));
     let binds = |at: usize| matches!(tokens.get(at), Some(Token::Assign | Token::Colon));
     let first = usize::from(tokens.first() == Some(&Token::Pub) && is_name(1));

@@ -21,7 +21,8 @@ fn cube() -> Polyhedron {
 }
 
 fn stroke(kind: Kind, points: &[[f64; 3]]) -> Stroke {
-    Stroke { points: points.iter().copied().map(DVec3::from).collect(), kind, id: 7, round: None }
+    let points = points.iter().copied().map(DVec3::from).collect();
+    Stroke { points, kind, id: 7, round: None, drawn: vec![] }
 }
 
 fn strokes(drawing: &Drawing, class: Class) -> f64 {
@@ -201,4 +202,26 @@ fn many_layers_do_not_fill_the_grid() {
     let camera = Camera::parallel(dvec3(0.001, -1.0, 0.001)).expect("a direction");
     let found = drawn(&solids, &camera, Method::Count);
     assert!(found.visible > 400.0 && found.hidden > 0.0);
+}
+
+#[test]
+fn outlines_of_balls_end_where_they_run_into_other_solids() {
+    let visible = |solids: &[Polyhedron], camera: &Camera, id: u32| -> f64 {
+        let found = drawn(solids, camera, Method::Auto);
+        let of = found.lines.iter().filter(|l| l.id == id && l.class == Class::Visible);
+        of.map(|l| l.path.length()).sum()
+    };
+    let ball = || sphere(10.0, 60);
+    // Half of the ball stands out of the box.
+    let block = cuboid(dvec3(-20.0, -20.0, -20.0), dvec3(20.0, 20.0, 0.0));
+    let steep = Camera::parallel(dvec3(0.0, -1.0, 1.0)).expect("a direction");
+    let found = visible(&[block, ball()], &steep, 1);
+    assert!(near(found, 10.0 * std::f64::consts::PI, 1e-6), "{found}");
+    // Two balls, each outline within the other one where the cosine is below -0.4.
+    let solids = [ball(), ball().placed(&Placement::translation(DVec3::X * 8.0))];
+    let known = 20.0 * (std::f64::consts::PI - libm::acos(0.4));
+    for id in 0..2 {
+        let found = visible(&solids, &Camera::view(View::Front), id);
+        assert!(near(found, known, 1e-5), "{id}: {found} {known}");
+    }
 }
