@@ -96,7 +96,7 @@ pub enum OffsetError {
 
 /// Shares of the tolerance: what chords may be off their arcs, and what mitred faces and arcs of rims may be
 /// off.
-const CHORDS: f64 = 0.8;
+const CHORDS: f64 = 0.96;
 const JOINTS: f64 = 0.2;
 
 /// The points at most `by` mm from a solid; for a negative `by` the points of the solid at least so far from
