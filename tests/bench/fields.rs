@@ -94,6 +94,9 @@ fn part(i: usize, step: f64) -> f64 {
     (i as f64 * step).fract()
 }
 
+/// A numbered point.
+type Place = fn(usize) -> DVec3;
+
 /// Points about the ring of [`closest`], anywhere.
 fn scattered(i: usize) -> DVec3 {
     (dvec3(part(i, 0.819_172_5), part(i, 0.671_043_6), part(i, 0.549_700_4)) - 0.5) * 32.0
@@ -109,7 +112,7 @@ fn near(i: usize) -> DVec3 {
 }
 
 /// Millions of closest points a second on a ring of 102400 triangles.
-fn closest(name: &str, field: &Polyhedral, place: fn(usize) -> DVec3) {
+fn closest(name: &str, field: &Polyhedral, place: Place) {
     let points: Vec<DVec3> = (0..POINTS).map(place).collect();
     let ask = || points.iter().map(|p| field.nearest(*p).point.distance(*p)).sum::<f64>();
     let taken = (0..RUNS).map(|_| timed(ask).0).fold(f64::INFINITY, f64::min);
@@ -117,7 +120,7 @@ fn closest(name: &str, field: &Polyhedral, place: fn(usize) -> DVec3) {
 }
 
 /// The same for points of small cells, with the candidates of a cell at hand, and with finding them.
-fn closest_by_cell(name: &str, field: &Polyhedral, place: fn(usize) -> DVec3) {
+fn closest_by_cell(name: &str, field: &Polyhedral, place: Place) {
     const CELLS: usize = 2000;
     const EACH: usize = 100;
     const EDGE: f64 = 0.25;
@@ -147,7 +150,7 @@ fn closest_by_cell(name: &str, field: &Polyhedral, place: fn(usize) -> DVec3) {
 
 fn main() {
     let ring = Polyhedral::new(torus(10.0, 4.0, 320, 160).mesh()).expect("full");
-    let cases: [(&str, fn(usize) -> DVec3); 2] = [("scattered", scattered), ("near", near)];
+    let cases: [(&str, Place); 2] = [("scattered", scattered), ("near", near)];
     for (name, place) in cases {
         closest(name, &ring, place);
         closest_by_cell(name, &ring, place);

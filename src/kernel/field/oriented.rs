@@ -136,8 +136,8 @@ impl Eight {
         // Loops over lanes alone, which compilers turn into vectors.
         let mut from = [[0.0; LANES]; 3];
         for k in 0..3 {
-            for i in 0..LANES {
-                from[k][i] = at[k] - self.center[k][i];
+            for (from, center) in from[k].iter_mut().zip(&self.center[k]) {
+                *from = at[k] - center;
             }
         }
         let [x, y, z] = &from;

@@ -16,6 +16,7 @@ use rustc_hash::FxHashMap;
 
 use super::{
     Field, Local,
+    near::ROUNDING,
     pieces::Pieces,
     tree::Tree,
     triangle::{Feature, Part, Triangle},
@@ -106,6 +107,19 @@ impl Polyhedral {
             "a mesh with a face has a nearest point"
         );
         self.on_triangle(found, p)
+    }
+
+    /// Whether a point is inside or, as far as rounding lets tell, on the boundary.
+    ///
+    /// ```
+    /// use glam::{DVec3, dvec3};
+    /// use katachi::kernel::{brep::primitive::cuboid, field::Polyhedral};
+    /// let cube = Polyhedral::new(cuboid(DVec3::ZERO, DVec3::splat(2.0)).mesh()).unwrap();
+    /// assert!(cube.holds(dvec3(2.0, 1.0, 1.0)) && !cube.holds(dvec3(2.0 + 1e-9, 1.0, 1.0)));
+    /// ```
+    pub fn holds(&self, p: DVec3) -> bool {
+        let size = self.extent.min.abs().max(self.extent.max.abs()).max_element();
+        self.distance(p) <= ROUNDING * size
     }
 
     /// The nearest point, known to lie on a triangle.

@@ -1,8 +1,10 @@
 //! Closed forms against meshes, cells against the whole, and set operations against their flags.
 
+use std::f64::consts::TAU;
+
 use glam::{DVec3, dvec3};
 
-use super::*;
+use super::{triangle::Triangle, *};
 use crate::geom::{Origin, PolyMesh, Surface};
 
 /// Numbers in [0, 1), the same in every run.

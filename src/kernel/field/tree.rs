@@ -138,7 +138,8 @@ impl Tree {
                 open[count] = (square, child);
                 (least, place) = if square < least { (square, count) } else { (least, place) };
                 // What is no number is not known to be far.
-                count += usize::from(!(square > cut));
+                let far = square > cut;
+                count += usize::from(!far);
             }
             // The nearest is next; after it the least distance is so small that order hardly matters.
             if place + 1 < count {
