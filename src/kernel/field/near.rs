@@ -21,8 +21,9 @@ pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 const MANY: usize = 2048;
 /// So many of the nearest triangles are tried for the upper bound of a cell.
 const TRIED: usize = 6;
-/// Candidates that are measured one by one, without a look at their boxes.
-const FEW: usize = 6;
+/// Candidates that are measured one by one, without a look at their boxes: so many cells of an octree have no
+/// more that boxes would need most of its memory.
+const FEW: usize = 24;
 
 /// A triangle as a cell sees it.
 #[derive(Clone, Copy, Debug)]
