@@ -40,10 +40,11 @@ const BIN: f64 = 0.1;
 const OVERDRAWN: f64 = 0.005;
 
 /// Examples that are drawn wrong from somewhere: facets of a bore whose edges were rounded are off by more than the tolerance
-/// and are drawn each.
-const WRONG: [(&str, &str); 1] = [("rounded_bracket.kata", "near")];
+/// and are drawn each; 1.05 % of the sponge, whose contours run over few large triangles.
+const WRONG: [(&str, &str); 2] = [("rounded_bracket.kata", "near"), ("gyroid.kata", "front")];
 /// Examples whose contours run over facets, or double where a wall that is seen edge-on is off by rounding.
-const OVERLAPPING: [&str; 4] = ["bottle_cap.kata", "gyroid.kata", "pebble.kata", "soap_box.kata"];
+const OVERLAPPING: [&str; 5] =
+    ["bottle_cap.kata", "gyroid.kata", "metaball.kata", "pebble.kata", "soap_box.kata"];
 
 /// Where the examples are looked at from.
 #[derive(Clone, Copy, Debug)]
