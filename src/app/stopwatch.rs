@@ -44,6 +44,8 @@ struct Laps {
 struct Steps {
     expected: AtomicUsize,
     done: AtomicUsize,
+    /// The last stage that began.
+    stage: Mutex<&'static str>,
     over: Mutex<bool>,
     bell: Condvar,
 }
@@ -114,6 +116,10 @@ impl Watch for Stopwatch {
     fn step(&self) {
         self.steps.done.fetch_add(1, Relaxed);
     }
+
+    fn stage(&self, name: &'static str) {
+        *hold(&self.steps.stage) = name;
+    }
 }
 
 impl Laps {
@@ -143,6 +149,7 @@ impl Steps {
             let bar = bar.get_or_insert_with(new_bar);
             bar.set_length(self.expected.load(Relaxed) as u64);
             bar.set_position(self.done.load(Relaxed) as u64);
+            bar.set_message(*hold(&self.stage));
             bar.tick();
         }
         if let Some(bar) = bar {
@@ -152,7 +159,8 @@ impl Steps {
 }
 
 fn new_bar() -> ProgressBar {
-    let style = ProgressStyle::with_template("{spinner} {wide_bar} {pos}/{len} solids {elapsed}");
+    let style =
+        ProgressStyle::with_template("{spinner} {wide_bar} {pos}/{len} solids {msg} {elapsed}");
     let bar = ProgressBar::new(0).with_elapsed(PATIENCE);
     style.map(|style| bar.clone().with_style(style)).unwrap_or(bar)
 }

@@ -32,6 +32,9 @@ pub trait Watch: Sync {
 
     /// One step is done.
     fn step(&self);
+
+    /// A long stage of a step begins, such as "fillet"; from any thread.
+    fn stage(&self, name: &'static str);
 }
 
 /// A watch that looks away.
@@ -43,6 +46,7 @@ impl Watch for Unwatched {
     fn leave(&self) {}
     fn expect(&self, _: usize) {}
     fn step(&self) {}
+    fn stage(&self, _: &'static str) {}
 }
 
 /// Runs `work` as one phase.

@@ -67,16 +67,27 @@ pub fn level_set<L: Level>(
         if contour.is_empty() {
             return Ok(Polyhedron::empty());
         }
-        let mesh = contour.mesh(origins, &origin);
+        let crossed = crossings(&contour.mesh());
+        if crossed.is_empty() {
+            break;
+        }
+        contour.part(&crossed)?;
+    }
+    let mut kept = vec![];
+    for _ in 0..TRIES {
+        let mesh = contour.collapsed(&kept, origins, &origin);
         let crossed = crossings(&mesh);
         if crossed.is_empty() {
             return Ok(faces::from_import(&mesh)?);
         }
-        contour.part(&crossed)?;
+        kept.extend(crossed);
     }
-    let surface = Polyhedron::new(contour.mesh(origins, origin))?;
+    let surface = Polyhedron::new(contour.collapsed(&kept, origins, origin))?;
     Ok(boolean::self_union(&surface)?.solid)
 }
+
+/// How often a surface is made of fewer triangles, each time with more places kept where it crossed itself.
+const TRIES: usize = 4;
 
 /// The solid that charges bound at a threshold above 0, mm; empty where they do not reach it.
 ///
@@ -141,7 +152,8 @@ mod tests {
     fn a_box_grows_and_shrinks() {
         let block = cuboid(DVec3::ZERO, dvec3(10.0, 20.0, 30.0));
         let round = grown(&block, 2.0, 0.02);
-        assert!((volume(&round) - 11187.492558).abs() < 12.0);
+        // The tolerance times a third of the area: flat triangles of round parts lie inside.
+        assert!((volume(&round) - 11187.492558).abs() < 20.0, "{}", volume(&round));
         let sharp = grown(&block, -2.0, 0.02);
         assert!((volume(&sharp) - 2496.0).abs() < 1e-4, "{}", volume(&sharp));
     }

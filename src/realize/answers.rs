@@ -12,7 +12,10 @@ use crate::{
         spherical_projection::{Projection, solid_angle},
     },
     input,
-    kernel::brep::distance,
+    kernel::{
+        brep::distance,
+        field::{Field, Polyhedral},
+    },
     shape::{
         Geometry, GeometryError, Kind, Measures, ShapeGraph, ShapeId,
         geometry::{Data, Imported, InsideMethod},
@@ -46,7 +49,9 @@ impl Geometry for Realizer<'_> {
         point: DVec3,
         by: InsideMethod,
     ) -> Result<bool, GeometryError> {
-        let InsideMethod::Sphere = by;
+        if by == InsideMethod::Field {
+            return Ok(self.field(graph, shape)?.is_some_and(|field| field.holds(point)));
+        }
         if let Some(boundary) = self.projections.get(&shape) {
             return Ok(boundary.inside(point));
         }
@@ -72,7 +77,8 @@ impl Geometry for Realizer<'_> {
         shape: ShapeId,
         point: DVec3,
     ) -> Result<f64, GeometryError> {
-        distance::point(&self.solid(graph, shape)?.polyhedron, point).ok_or_else(nowhere)
+        let field = self.field(graph, shape)?;
+        field.map(|field| field.distance(point)).ok_or_else(nowhere)
     }
 
     fn distance(&self, graph: &ShapeGraph, a: ShapeId, b: ShapeId) -> Result<f64, GeometryError> {
@@ -114,6 +120,23 @@ impl Geometry for Realizer<'_> {
 
     fn read(&self, file: &str) -> Result<Vec<u8>, FileError> {
         self.world.read(file)
+    }
+}
+
+impl Realizer<'_> {
+    /// The distance field of a solid, made once; `None` for the empty one.
+    fn field(
+        &self,
+        graph: &ShapeGraph,
+        shape: ShapeId,
+    ) -> Result<Option<Arc<Polyhedral>>, GeometryError> {
+        if let Some(field) = self.fields.get(&shape) {
+            return Ok(Some(field));
+        }
+        let solid = self.solid(graph, shape)?;
+        let field = Polyhedral::new(solid.polyhedron.mesh()).map(Arc::new);
+        self.fields.extend(field.iter().map(|field| (shape, field.clone())));
+        Ok(field)
     }
 }
 

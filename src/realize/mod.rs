@@ -45,7 +45,10 @@ use self::{
 use crate::{
     base::{Code, Diagnostic, Phase, Watch, World, watch::during},
     geom::{Placement, Stretch, Tolerance, spherical_projection::Projection},
-    kernel::brep::{Polyhedron, resolution::lost},
+    kernel::{
+        brep::{Polyhedron, resolution::lost},
+        field::Polyhedral,
+    },
     shape::{Kind, Measures, Node, ShapeGraph, ShapeId, Stretched},
 };
 
@@ -64,6 +67,7 @@ pub struct Realizer<'w> {
     measures: Store<ShapeId, Arc<Measures>>,
     /// Boundaries that were asked about, made ready for more questions.
     projections: Store<ShapeId, Arc<Projection>>,
+    fields: Store<ShapeId, Arc<Polyhedral>>,
     /// What readers left out, by the node that asked.
     remarks: Mutex<BTreeMap<ShapeId, Diagnostic>>,
 }
@@ -81,6 +85,7 @@ impl<'w> Realizer<'w> {
             files: Store::default(),
             measures: Store::default(),
             projections: Store::default(),
+            fields: Store::default(),
             remarks: Mutex::default(),
         }
     }

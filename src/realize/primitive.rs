@@ -78,6 +78,17 @@ impl Coded for SheetError {
     }
 }
 
+/// The name of what a node asks of a distance field, if it does.
+fn stage(node: &Node) -> Option<&'static str> {
+    match node {
+        Node::Offset { .. } => Some("offset"),
+        Node::Fillet { .. } => Some("fillet"),
+        Node::Metaball { .. } => Some("metaball"),
+        Node::Formula { .. } => Some("field"),
+        _ => None,
+    }
+}
+
 /// Makes the solid of a node that is no set operation and whose parts are made.
 pub fn make(realizer: &Realizer, graph: &ShapeGraph, unit: Stretched) -> Made<Polyhedron> {
     let id = unit.id;
@@ -86,6 +97,7 @@ pub fn make(realizer: &Realizer, graph: &ShapeGraph, unit: Stretched) -> Made<Po
     let figure_of = |profile: ShapeId| realizer.figure_made(graph.part(unit, profile));
     let bent =
         |profile: ShapeId| figure::bent(realizer, graph, graph.part(unit, profile), tolerance);
+    stage(graph.node(id)).iter().for_each(|name| realizer.watch.stage(name));
     match graph.node(id) {
         Node::Box { min, max } => Ok(primitive::cuboid(*min, *max)),
         Node::Cone { r1, r2, h, sides } => {

@@ -174,6 +174,7 @@ impl Watch for Counted {
     fn step(&self) {
         self.0.fetch_add(1, Ordering::Relaxed);
     }
+    fn stage(&self, _: &'static str) {}
 }
 
 /// A node is made once in a run: by whichever name, wherever it is placed, however often it is asked about.

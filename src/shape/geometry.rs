@@ -86,6 +86,8 @@ pub enum Data {
 pub enum InsideMethod {
     /// The spherical projection (Nagashima).
     Sphere,
+    /// The signed distance from the boundary (Tatehara et al.).
+    Field,
 }
 
 /// Answers about shapes. `session` hands one in; `realize` implements it. Results are kept by node.

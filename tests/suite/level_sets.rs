@@ -97,6 +97,16 @@ fn sharp_edges_of_formulas_stay_sharp() {
 }
 
 #[test]
+fn few_triangles_are_within_the_tolerance() {
+    // A ball of 6 mm within 0.01 mm: at best some 4 pi / (0.77 * 4 * 0.01 / 6) triangles.
+    let ball = measured("field(p => norm(p) - 6, within = [[-10, -10, -10], [10, 10, 10]])", 0.01);
+    assert!(ball.triangles < 7_000, "{}", ball.triangles);
+    let pill = "metaball([{ at = [-8, 0, 0], q = 5 }, { at = [8, 0, 0], q = 5 }])";
+    let pill = measured(pill, 0.01);
+    assert!(pill.triangles < 10_000, "{}", pill.triangles);
+}
+
+#[test]
 fn what_folds_at_many_places_is_contoured() {
     let ring = grown(&torus(10.0, 4.0, 48, 32), 7.0, 0.03);
     assert_eq!(measure::genus(&ring), 0);
@@ -152,15 +162,15 @@ fn the_hypersphere_tests_agree() {
         let [exact, halved] = [Test::Exact, Test::Quadtree].map(found);
         let [a, b] = [&exact, &halved].map(measure::volume);
         assert!((a / expected - 1.0).abs() < 0.01, "{a}");
-        // Areas are halved down to half of the tolerance.
-        assert!((b - a).abs() < 0.075 * measure::area(&exact), "{b} {a}");
+        // Areas are halved down to half of the tolerance, and triangles lie inside by as much as it allows.
+        assert!((b - a).abs() < 0.15 * measure::area(&exact), "{b} {a}");
         // No hole in the middle, where the solid lies inside of the sphere.
         assert_eq!(measure::shells(&halved), 1);
     }
     let random = Test::MonteCarlo { n: 1000, seed: 7 };
     let sampled = tested(&block, 1.0, random, tolerance(0.15)).expect("an offset");
     assert!(
-        (measure::volume(&sampled) / 108.462 - 1.0).abs() < 0.06,
+        (measure::volume(&sampled) / 108.462 - 1.0).abs() < 0.1,
         "{}",
         measure::volume(&sampled)
     );
@@ -174,6 +184,10 @@ fn fields_tell_distances() {
 assert near(s.field().at([0, 0, 15]), 5mm)
 assert near(s.field().at([0, 0, 4]), -4mm)
 assert near(distance(s, [8, 0, 5]), 3mm)
+assert inside(s, [0, 0, 4], by = FIELD) and inside(s, [5, 0, 10], by = FIELD)
+assert not inside(s, [5.001, 0, 4], by = FIELD)
+assert inside(s.rotate(z = 17deg).rotate(x = 40deg), [0, 0, 0], by = FIELD)
+assert not inside(s & box(1, 1, 1).move(x = 50), [0, 0, 0], by = FIELD)
 part p = s";
     assert!((measured(source, 0.1).volume - 1000.0).abs() < 1e-9);
 }

@@ -44,6 +44,7 @@ use crate::{
             Polyhedron,
             boolean::{self, BooleanError, Tree},
             crossing::crossing,
+            measure::bounds,
             primitive,
         },
         field::Polyhedral,
@@ -96,7 +97,7 @@ pub enum OffsetError {
 
 /// Shares of the tolerance: what chords may be off their arcs, and what mitred faces and arcs of rims may be
 /// off.
-const CHORDS: f64 = 0.8;
+const CHORDS: f64 = 0.96;
 const JOINTS: f64 = 0.2;
 
 /// The points at most `by` mm from a solid; for a negative `by` the points of the solid at least so far from
@@ -136,6 +137,9 @@ fn offset_before(
     if by == 0.0 || solid.is_empty() {
         return Ok(solid.clone());
     }
+    if is_thinner(solid, -2.0 * by) {
+        return Ok(Polyhedron::empty());
+    }
     // What is made of pieces is exact and has few triangles; what is too much for that is contoured.
     // Errors of chords and joints may add up: then once more, finer.
     let mut finer = tolerance;
@@ -147,6 +151,12 @@ fn offset_before(
         }
     }
     apart(solid, by, tolerance)
+}
+
+/// Whether no ball of a diameter fits between the faces of the box around a solid.
+fn is_thinner(solid: &Polyhedron, diameter: f64) -> bool {
+    let thinnest = bounds(solid).map_or(0.0, |[low, high]| (high - low).min_element());
+    diameter > thinnest
 }
 
 /// How often an offset is made, each time with half of the tolerance.

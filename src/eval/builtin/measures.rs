@@ -80,7 +80,11 @@ fn inside(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
     let (shape, point) = (args.shape(0)?, args.point(1)?);
     let by = match args.symbol(2)? {
         Symbol::Sphere => InsideMethod::Sphere,
-        other => return args.fail(2, Code::OutOfRange, format!("`by` is SPHERE, got {other}")),
+        Symbol::Field => InsideMethod::Field,
+        other => {
+            let words = format!("`by` is SPHERE or FIELD, got {other}");
+            return args.fail(2, Code::OutOfRange, words);
+        }
     };
     let inside = evaluator.ask(args.call, |host, graph| host.inside(graph, shape, point, by))?;
     Ok(Value::Bool(inside))

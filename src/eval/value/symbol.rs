@@ -45,6 +45,8 @@ symbols! {
     Winding = "WINDING",
     /// The spherical projection.
     Sphere = "SPHERE",
+    /// The distance field.
+    Field = "FIELD",
     /// The exact kernel.
     Exact = "EXACT",
     /// The spherical quadtree.

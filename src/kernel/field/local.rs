@@ -1,73 +1,51 @@
-//! The part of a mesh that can be nearest to the points of a cell.
-//!
-//! If the nearest triangle is d from the middle of a cell whose corners are h away, no point of the cell has
-//! a nearest triangle farther than d + 2 h from the middle. The candidates stand in the order of their
-//! distance from the middle, so that a question ends as soon as the rest must be farther.
+//! The field of a mesh within a cell.
 
+use super::{Field, Nearest, Polyhedral, near::Near};
+use crate::geom::Bounds;
 use glam::DVec3;
 
-use super::{Field, Nearest, Polyhedral, half_diagonal, triangle::Triangle};
-use crate::geom::Bounds;
-
-/// Slack for rounding in the choice of candidates, relative to the coordinates.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
-
-/// The field of a mesh within a cell.
+/// The field of a mesh within a cell: only what can be nearest to its points is looked at.
 #[derive(Clone, Debug)]
 pub struct Local<'a> {
     whole: &'a Polyhedral,
-    middle: DVec3,
-    /// Distance from the middle, place in the whole, and the triangle; nearest first.
-    candidates: Vec<(f64, u32, Triangle)>,
+    /// None while candidates are too many to be listed.
+    near: Option<Near>,
 }
 
 impl<'a> Local<'a> {
     /// The field of a mesh for the points of a cell.
+    ///
+    /// ```
+    /// use glam::{DVec3, dvec3};
+    /// use katachi::{geom::Bounds, kernel::{brep::primitive::cuboid, field::{Local, Polyhedral}}};
+    /// let cube = Polyhedral::new(cuboid(DVec3::ZERO, DVec3::splat(8.0)).mesh()).unwrap();
+    /// let above = Bounds { min: dvec3(1.0, 1.0, 9.0), max: dvec3(5.0, 5.0, 10.0) };
+    /// let local = Local::new(&cube, &above);
+    /// assert_eq!(local.candidates(), Some(2));
+    /// assert_eq!(local.nearest(dvec3(2.0, 3.0, 9.5)).distance, 1.5);
+    /// ```
     pub fn new(whole: &'a Polyhedral, cell: &Bounds) -> Local<'a> {
-        let (middle, reach) = (cell.center(), half_diagonal(cell));
-        let nearest = whole.nearest(middle).distance.abs();
-        let near = whole.within(middle, widened(nearest + 2.0 * reach, middle));
-        let of = |(d, i): (f64, u32)| (d, i, whole.triangles[i as usize]);
-        Local { whole, middle, candidates: near.into_iter().map(of).collect() }
+        Local { whole, near: Near::new(whole, cell) }
     }
 
     /// The field for a cell inside of this one's.
     pub fn within(&self, cell: &Bounds) -> Local<'a> {
-        let (middle, reach) = (cell.center(), half_diagonal(cell));
-        let away = |t: &Triangle| t.nearest(middle).0.distance(middle);
-        let mut candidates: Vec<(f64, u32, Triangle)> =
-            self.candidates.iter().map(|(_, i, t)| (away(t), *i, *t)).collect();
-        let nearest = candidates.iter().map(|c| c.0).fold(f64::INFINITY, f64::min);
-        candidates.retain(|c| c.0 <= widened(nearest + 2.0 * reach, middle));
-        candidates.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        Local { whole: self.whole, middle, candidates }
+        let near = self.near.as_ref().map(|near| near.within(self.whole, cell));
+        Local { whole: self.whole, near: near.or_else(|| Near::new(self.whole, cell)) }
     }
 
     /// The nearest point of the boundary and what it lies on, for a point of the cell.
     pub fn nearest(&self, p: DVec3) -> Nearest {
-        let moved = p.distance(self.middle);
-        let (mut found, mut square, mut best) =
-            (self.candidates[0].1, f64::INFINITY, f64::INFINITY);
-        for (away, i, triangle) in &self.candidates {
-            if away - moved > best {
-                break;
-            }
-            let apart = triangle.nearest(p).0.distance_squared(p);
-            if apart < square {
-                (found, square, best) = (*i, apart, apart.sqrt());
-            }
+        match &self.near {
+            Some(near) => near.nearest(self.whole, p),
+            None => self.whole.nearest(p),
         }
-        self.whole.on_triangle(found, p)
     }
 
-    /// The number of triangles that it looks at.
-    pub fn candidates(&self) -> usize {
-        self.candidates.len()
+    /// The number of triangles that it looks at; `None` if these are too many to be listed.
+    pub fn candidates(&self) -> Option<usize> {
+        self.near.as_ref().map(|near| near.list.len())
     }
-}
-
-fn widened(reach: f64, middle: DVec3) -> f64 {
-    reach + ROUNDING * (reach + middle.abs().max_element())
 }
 
 impl Field for Local<'_> {

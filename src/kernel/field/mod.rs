@@ -28,6 +28,8 @@ mod hypersphere;
 mod lathe;
 mod local;
 mod metaball;
+mod near;
+mod oriented;
 mod outline;
 mod pieces;
 mod polyhedral;

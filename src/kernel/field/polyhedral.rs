@@ -16,6 +16,7 @@ use rustc_hash::FxHashMap;
 
 use super::{
     Field, Local,
+    near::ROUNDING,
     pieces::Pieces,
     tree::Tree,
     triangle::{Feature, Part, Triangle},
@@ -54,7 +55,7 @@ struct Facet {
 /// The distance field of a solid bounded by a closed mesh, which must have a face.
 #[derive(Clone, Debug)]
 pub struct Polyhedral {
-    tree: Tree,
+    pub(super) tree: Tree,
     /// In the order of the tree.
     pub(super) triangles: Vec<Triangle>,
     facets: Vec<Facet>,
@@ -80,35 +81,45 @@ impl Polyhedral {
         }
         let cut = triangulate(mesh);
         let at = |corners: &[u32; 3]| corners.map(|c| mesh.points[c as usize]);
-        let boxes: Vec<Bounds> = cut.corners.iter().map(|t| Bounds::of(at(t))).collect();
-        let (tree, order) = Tree::new(&boxes);
+        let places: Vec<[DVec3; 3]> = cut.corners.iter().map(at).collect();
+        let (tree, order) = Tree::new(&places);
         let of = |i: &u32| (cut.corners[*i as usize], cut.face[*i as usize]);
         let ordered: Vec<([u32; 3], u32)> = order.iter().map(of).collect();
         let triangles: Vec<Triangle> = ordered.iter().map(|(t, _)| Triangle::new(at(t))).collect();
         let facets = facets(&ordered, &triangles);
         let corners = corner_normals(&mesh.points, &facets);
-        let extent = boxes.iter().fold(Bounds::EMPTY, |all, b| all.joined(b));
+        let extent = Bounds::of(places.into_iter().flatten());
         Some(Polyhedral { tree, triangles, facets, corners, points: mesh.points.clone(), extent })
     }
 
     /// The nearest point of the boundary and what it lies on.
     pub fn nearest(&self, p: DVec3) -> Nearest {
         let (mut found, mut limit) = (0, f64::INFINITY);
-        self.tree.nearest(p, f64::INFINITY, |items, mut best| {
-            for i in items {
-                let square = self.triangles[i as usize].nearest(p).0.distance_squared(p);
-                if square < best {
-                    (best, found) = (square, i);
-                }
+        self.tree.nearest(p, f64::INFINITY, |i, best| {
+            let square = self.triangles[i as usize].nearest(p).0.distance_squared(p);
+            if square < best {
+                (limit, found) = (square, i);
             }
-            limit = best;
-            best
+            limit
         });
         debug_assert!(
             limit.is_finite() || !p.is_finite(),
             "a mesh with a face has a nearest point"
         );
         self.on_triangle(found, p)
+    }
+
+    /// Whether a point is inside or, as far as rounding lets tell, on the boundary.
+    ///
+    /// ```
+    /// use glam::{DVec3, dvec3};
+    /// use katachi::kernel::{brep::primitive::cuboid, field::Polyhedral};
+    /// let cube = Polyhedral::new(cuboid(DVec3::ZERO, DVec3::splat(2.0)).mesh()).unwrap();
+    /// assert!(cube.holds(dvec3(2.0, 1.0, 1.0)) && !cube.holds(dvec3(2.0 + 1e-9, 1.0, 1.0)));
+    /// ```
+    pub fn holds(&self, p: DVec3) -> bool {
+        let size = self.extent.min.abs().max(self.extent.max.abs()).max_element();
+        self.distance(p) <= ROUNDING * size
     }
 
     /// The nearest point, known to lie on a triangle.
@@ -157,21 +168,18 @@ impl Polyhedral {
         self.facets.iter().map(seen).sum::<f64>() >= TAU
     }
 
-    /// The triangles, by their places, at most so far from a point, with their distances, nearest first.
-    pub(super) fn within(&self, p: DVec3, reach: f64) -> Vec<(f64, u32)> {
-        let mut near = vec![];
-        let square = reach * reach;
-        self.tree.nearest(p, square.next_up(), |items, best| {
-            for i in items {
-                let found = self.triangles[i as usize].nearest(p).0.distance_squared(p);
-                if found <= square {
-                    near.push((found.sqrt(), i));
-                }
+    /// The triangles, by their places, at most so far from a point; `None` if they are more than `most`.
+    pub(super) fn within(&self, p: DVec3, reach: f64, most: usize) -> Option<Vec<u32>> {
+        let (mut near, square) = (vec![], reach * reach);
+        self.tree.nearest(p, square.next_up(), |i, best| {
+            let found = self.triangles[i as usize].nearest(p).0.distance_squared(p);
+            if found <= square {
+                near.push(i);
             }
-            best
+            // Nothing is nearer than this: the search ends.
+            if near.len() > most { f64::NEG_INFINITY } else { best }
         });
-        near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        near
+        (near.len() <= most).then_some(near)
     }
 }
 

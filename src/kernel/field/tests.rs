@@ -1,8 +1,10 @@
 //! Closed forms against meshes, cells against the whole, and set operations against their flags.
 
+use std::f64::consts::TAU;
+
 use glam::{DVec3, dvec3};
 
-use super::*;
+use super::{triangle::Triangle, *};
 use crate::geom::{Origin, PolyMesh, Surface};
 
 /// Numbers in [0, 1), the same in every run.
@@ -119,4 +121,34 @@ fn features_and_signs_at_edges_and_corners() {
     assert_eq!(feature(3.0, 3.0, 0.4), Feature::Edge(3, 7));
     assert_eq!(feature(-1.0, -1.0, -1.0), Feature::Vertex(0));
     assert!(cube.distance(dvec3(-1e-9, -1e-9, 0.5)) > 0.0);
+}
+
+#[test]
+fn the_hierarchy_finds_what_is_nearest() {
+    let at = |i: u32, j: u32| {
+        let (u, v) = (f64::from(i % 40) * TAU / 40.0, f64::from(j % 24) * TAU / 24.0);
+        let out = 100.0 + 9.0 + 3.0 * libm::cos(v);
+        dvec3(out * libm::cos(u), out * libm::sin(u), 3.0 * libm::sin(v))
+    };
+    let mut ring = PolyMesh::with_points((0..40 * 24).map(|k| at(k / 24, k % 24)).collect());
+    let origin = ring.add_origin(Origin::of(Surface::Facets));
+    for (i, j) in (0..40).flat_map(|i| (0..24).map(move |j| (i, j))) {
+        let [a, b, c, d] =
+            [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| i % 40 * 24 + j % 24);
+        for corners in [[a, b, c], [a, c, d]] {
+            let plane = ring.add_plane();
+            ring.push_face(&[corners], plane, origin);
+        }
+    }
+    let whole = Polyhedral::new(&ring).expect("full");
+    let mut random = Random(5);
+    for reach in [1.0, 120.0, 1e4, 1e9, 1e25] {
+        for _ in 0..200 {
+            let p = random.point(reach);
+            let away = |t: &Triangle| t.nearest(p).0.distance_squared(p);
+            let least = whole.triangles.iter().map(away).fold(f64::INFINITY, f64::min).sqrt();
+            assert_eq!(whole.nearest(p).distance.abs(), least, "{p}");
+        }
+    }
+    assert!(whole.nearest(DVec3::NAN).distance.is_nan());
 }

@@ -1,120 +1,173 @@
-//! A bounding hierarchy for nearest-point questions alone: two boxes in a node, halved at medians.
+//! A hierarchy for nearest-point questions over triangles: eight boxes in a node, down to single triangles.
 
 use glam::DVec3;
 
+use super::oriented::{Eight, LANES, Oriented, SLACK};
 use crate::geom::Bounds;
 
-/// Items in a leaf.
-const LEAF: usize = 4;
-/// Deeper than any complete tree over 2^32 items.
-const DEPTH: usize = 40;
+/// More than can be open at a time: seven of each of eleven levels, and eight more.
+const OPEN: usize = 96;
+/// Marks a child that is an item.
+const ITEM: u32 = 1 << 31;
 
-/// The boxes of a node's two children.
-#[derive(Clone, Copy, Debug)]
-struct Pair([Bounds; 2]);
+/// A node: the boxes of its children, and what they are.
+#[derive(Clone, Debug)]
+struct Node {
+    boxes: Eight,
+    children: [u32; LANES],
+    count: u32,
+}
 
-/// The hierarchy. Node i has the children 2 i and 2 i + 1; those past the nodes are leaves.
+/// The hierarchy.
 #[derive(Clone, Debug)]
 pub(super) struct Tree {
-    nodes: Vec<Pair>,
-    /// Where the items of each leaf begin, in the order that [`Tree::new`] gives; one more at the end.
-    starts: Vec<u32>,
+    /// The root first.
+    nodes: Vec<Node>,
+    /// The node and the lane of each item.
+    places: Vec<u32>,
+    /// Boxes are measured from here.
+    origin: DVec3,
+    /// The size of their coordinates.
+    reach: f64,
+}
+
+/// A question: a point in the frame of the boxes, and what is too far.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Question {
+    at: [f32; 3],
+    slack: f64,
+}
+
+impl Question {
+    /// The square of the distance beyond which a box holds nothing nearer than the square root of `best`.
+    #[inline]
+    pub fn cut(&self, best: f64) -> f32 {
+        if best < 0.0 {
+            return -1.0; // nothing is so near
+        }
+        let far = best.sqrt() + self.slack;
+        // A trifle more than what rounding to a single number and squaring may take away.
+        (far * far) as f32 * (1.0 + 4.0 * f32::EPSILON)
+    }
+
+    /// The squares of the distances of eight boxes.
+    #[inline]
+    pub fn away(&self, boxes: &Eight) -> [f32; LANES] {
+        boxes.away(self.at)
+    }
 }
 
 impl Tree {
-    /// The hierarchy over boxes, and the order in which it holds them.
-    pub fn new(boxes: &[Bounds]) -> (Tree, Vec<u32>) {
-        let leaves = boxes.len().div_ceil(LEAF).next_power_of_two();
-        let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
-        let mut starts = vec![0; leaves + 1];
-        starts[leaves] = boxes.len() as u32;
-        let mut bounds = vec![Bounds::EMPTY; 2 * leaves];
-        fill(boxes, &mut order, 1, 0, &mut bounds, &mut starts);
-        let nodes = (0..leaves).map(|i| Pair([bounds[2 * i], bounds[2 * i + 1]])).collect();
-        (Tree { nodes, starts }, order)
+    /// The hierarchy over triangles, at least one, and the order in which it holds them.
+    pub fn new(triangles: &[[DVec3; 3]]) -> (Tree, Vec<u32>) {
+        let around = Bounds::of(triangles.iter().flatten().copied());
+        let origin = around.center();
+        let shifted: Vec<[DVec3; 3]> = triangles.iter().map(|t| t.map(|p| p - origin)).collect();
+        let reach = (around.max - origin).length();
+        let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
+        let mut tree = Tree { nodes: vec![], places: vec![0; triangles.len()], origin, reach };
+        tree.fill(&shifted, &mut order, 0);
+        (tree, order)
     }
 
-    /// The items of the whole.
-    fn leaf(&self, node: usize) -> std::ops::Range<u32> {
-        let leaf = node - self.nodes.len();
-        self.starts[leaf]..self.starts[leaf + 1]
-    }
-
-    /// Goes through the items from near to far: `visit` takes a range of them and the square of the least
-    /// distance so far, and gives the square of the least distance.
-    #[inline]
-    pub fn nearest(
-        &self,
-        p: DVec3,
-        limit: f64,
-        mut visit: impl FnMut(std::ops::Range<u32>, f64) -> f64,
-    ) {
-        let mut open = [(0.0, 0usize); DEPTH];
-        let (mut count, mut best, mut node) = (0, limit, 1usize);
-        loop {
-            if node >= self.nodes.len() {
-                best = visit(self.leaf(node), best);
+    /// Makes the node over some items, which come to stand in its order from `start` on.
+    fn fill(&mut self, triangles: &[[DVec3; 3]], items: &mut [u32], start: u32) -> u32 {
+        let number = self.nodes.len() as u32;
+        self.nodes.push(Node { boxes: Eight::EMPTY, children: [0; LANES], count: 0 });
+        // Children are full but for the last, so that nodes are few.
+        let mut size = 1;
+        while size * LANES < items.len() {
+            size *= LANES;
+        }
+        part(triangles, items, size);
+        for (lane, part) in items.chunks_mut(size).enumerate() {
+            let first = start + (lane * size) as u32;
+            let around = if size == 1 {
+                self.places[first as usize] = number * LANES as u32 + lane as u32;
+                Oriented::of_triangle(triangles[part[0] as usize])
             } else {
-                let [l, r] = self.nodes[node].0.map(|b| away(&b, p));
-                let (near, far) = if l <= r {
-                    ((l, 2 * node), (r, 2 * node + 1))
-                } else {
-                    ((r, 2 * node + 1), (l, 2 * node))
-                };
-                if far.0 < best {
-                    open[count] = far;
-                    count += 1;
-                }
-                if near.0 < best {
-                    node = near.1;
-                    continue;
-                }
+                around(triangles, part)
+            };
+            let child = if size == 1 { first | ITEM } else { self.fill(triangles, part, first) };
+            let node = &mut self.nodes[number as usize];
+            node.boxes.set(lane, &around);
+            node.children[lane] = child;
+            node.count = lane as u32 + 1;
+        }
+        number
+    }
+
+    /// The box of an item.
+    pub fn item(&self, item: u32) -> Oriented {
+        let place = self.places[item as usize] as usize;
+        self.nodes[place / LANES].boxes.get(place % LANES)
+    }
+
+    /// A point as boxes see it.
+    #[inline]
+    pub fn question(&self, p: DVec3) -> Question {
+        let from = p - self.origin;
+        let slack = SLACK * (from.abs().element_sum() + self.reach);
+        Question { at: from.as_vec3().to_array(), slack }
+    }
+
+    /// Goes through the items from near to far: `visit` takes one and the square of the least distance so far,
+    /// and gives the square of the least distance.
+    #[inline]
+    pub fn nearest(&self, p: DVec3, limit: f64, mut visit: impl FnMut(u32, f64) -> f64) {
+        let question = self.question(p);
+        let mut open = [(0.0f32, 0u32); OPEN];
+        let (mut count, mut best, mut cut) = (1, limit, question.cut(limit));
+        while count > 0 {
+            count -= 1;
+            let (away, child) = open[count];
+            if away > cut {
+                continue;
             }
-            loop {
-                if count == 0 {
-                    return;
+            if child & ITEM != 0 {
+                let found = visit(child & !ITEM, best);
+                if found < best {
+                    (best, cut) = (found, question.cut(found));
                 }
-                count -= 1;
-                if open[count].0 < best {
-                    node = open[count].1;
-                    break;
-                }
+                continue;
+            }
+            let node = &self.nodes[child as usize];
+            let squares = question.away(&node.boxes);
+            let (mut least, mut place) = (f32::INFINITY, count);
+            for (&square, &child) in squares.iter().zip(&node.children).take(node.count as usize) {
+                open[count] = (square, child);
+                (least, place) = if square < least { (square, count) } else { (least, place) };
+                // What is no number is not known to be far.
+                let far = square > cut;
+                count += usize::from(!far);
+            }
+            // The nearest is next; after it the least distance is so small that order hardly matters.
+            if place + 1 < count {
+                open.swap(place, count - 1);
             }
         }
     }
 }
 
-/// The square of the distance from a point to a box.
-#[inline]
-fn away(b: &Bounds, p: DVec3) -> f64 {
-    (b.min - p).max(p - b.max).max(DVec3::ZERO).length_squared()
+/// A box around some triangles.
+fn around(triangles: &[[DVec3; 3]], items: &[u32]) -> Oriented {
+    let chosen = || items.iter().map(|&i| triangles[i as usize]);
+    let facing = chosen().map(|[a, b, c]| (b - a).cross(c - a)).sum();
+    Oriented::of_points(|| chosen().flatten(), facing)
 }
 
-/// Orders the items of a node and below, and fills in the boxes.
-fn fill(
-    boxes: &[Bounds],
-    order: &mut [u32],
-    node: usize,
-    start: u32,
-    bounds: &mut [Bounds],
-    starts: &mut [u32],
-) {
-    let around = order.iter().fold(Bounds::EMPTY, |all, &i| all.joined(&boxes[i as usize]));
-    bounds[node] = around;
-    let leaves = starts.len() - 1;
-    if node >= leaves {
-        starts[node - leaves] = start;
+/// Orders items so that those that lie together stand in chunks of a size.
+fn part(triangles: &[[DVec3; 3]], items: &mut [u32], size: usize) {
+    if items.len() <= size {
         return;
     }
-    let middles = Bounds::of(order.iter().map(|&i| boxes[i as usize].center()));
-    let axis = if order.is_empty() { 0 } else { (middles.max - middles.min).max_position() };
-    let half = order.len() / 2;
-    if order.len() > 1 {
-        let key = |&i: &u32| boxes[i as usize].center()[axis];
-        order.select_nth_unstable_by(half, |i, j| key(i).total_cmp(&key(j)).then(i.cmp(j)));
-    }
-    let (left, right) = order.split_at_mut(half);
-    let middle = start + half as u32;
-    fill(boxes, left, 2 * node, start, bounds, starts);
-    fill(boxes, right, 2 * node + 1, middle, bounds, starts);
+    let middle = |i: u32| triangles[i as usize].iter().sum::<DVec3>();
+    let middles = Bounds::of(items.iter().map(|&i| middle(i)));
+    let axis = (middles.max - middles.min).max_position();
+    let key = |i: u32| middle(i)[axis];
+    let half = (items.len().div_ceil(size) / 2 * size).max(size);
+    items.select_nth_unstable_by(half, |&i, &j| key(i).total_cmp(&key(j)).then(i.cmp(&j)));
+    let (left, right) = items.split_at_mut(half);
+    part(triangles, left, size);
+    part(triangles, right, size);
 }

@@ -48,7 +48,7 @@ impl Triangle {
     ///
     /// Source: C. Ericson, *Real-Time Collision Detection*, 2005, section 5.1.5; the six products of the
     /// source follow from two.
-    #[inline]
+    #[inline(always)]
     pub fn nearest(&self, p: DVec3) -> (DVec3, Part) {
         let ap = p - self.a;
         let (d1, d2) = (self.ab.dot(ap), self.ac.dot(ap));

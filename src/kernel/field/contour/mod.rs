@@ -12,6 +12,7 @@
 //! | vertex cluster | [`loops`] | a piece of the surface in a leaf |
 //! | QEF | [`vertex`] | the vertex where tangent planes meet |
 //! | hybrid polygon | [`surface`] | triangles around a crossed edge |
+//! | edge collapse | [`collapse`] | fewer triangles within the tolerance |
 //!
 //! # Departures
 //! The papers refine by flatness of their data. Here a cell is halved as long as bounds cannot tell that it is
@@ -22,6 +23,7 @@
 //! Polygons are made through vertices alone, and cut at edges and faces only where [`Contour::part`] is told
 //! that triangles cross.
 
+mod collapse;
 mod edges;
 mod lattice;
 mod loops;
@@ -35,10 +37,12 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use thiserror::Error;
 
 use self::{
+    collapse::Collapse,
     octree::Octree,
     surface::{Made, Surface},
 };
-use crate::geom::{Bounds, Origin, PolyMesh};
+use super::half_diagonal;
+use crate::geom::{self, Bounds, Origin, PolyMesh};
 
 /// What the surface does in a cell.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -135,6 +139,28 @@ pub struct Contour<L> {
     made: Made,
 }
 
+/// What stays around a place that is kept, in half diagonals of the leaf there.
+const KEPT: f64 = 8.0;
+
+/// Triangles as a mesh, with the number of the origin of each.
+fn meshed(
+    points: &[DVec3],
+    triangles: &[[u32; 3]],
+    numbers: &[u32],
+    origins: &[Origin],
+) -> PolyMesh {
+    let mut mesh = PolyMesh::with_points(points.to_vec());
+    origins.iter().for_each(|o| {
+        mesh.add_origin(o.clone());
+    });
+    for (triangle, &number) in triangles.iter().zip(numbers) {
+        let plane = mesh.add_plane();
+        mesh.push_face(&[*triangle], plane, number);
+    }
+    mesh.drop_unused_points();
+    mesh
+}
+
 /// A triangle by the bits of its corners.
 type Name = [[u64; 3]; 3];
 
@@ -161,22 +187,37 @@ impl<L: Level> Contour<L> {
         self.surface.triangles.is_empty()
     }
 
-    /// The surface as a mesh of triangles, closed and manifold by index. `origin` tells which of the origins a
-    /// place of the surface has.
-    pub fn mesh(&self, origins: &[Origin], origin: impl Fn(DVec3) -> u32 + Sync) -> PolyMesh {
-        let mut mesh = PolyMesh::with_points(self.surface.points.clone());
-        origins.iter().for_each(|o| {
-            mesh.add_origin(o.clone());
-        });
-        let middle = |t: &[u32; 3]| t.map(|i| mesh.points[i as usize]).iter().sum::<DVec3>() / 3.0;
-        let triangles = &self.surface.triangles;
-        let numbers: Vec<u32> = triangles.par_iter().map(|t| origin(middle(t))).collect();
-        for (triangle, number) in triangles.iter().zip(numbers) {
-            let plane = mesh.add_plane();
-            mesh.push_face(&[*triangle], plane, number);
-        }
-        mesh.drop_unused_points();
-        mesh
+    /// The surface as a mesh of triangles, closed and manifold by index, of one origin.
+    pub fn mesh(&self) -> PolyMesh {
+        let Surface { points, triangles, .. } = &self.surface;
+        let origins = [Origin::of(geom::Surface::Facets)];
+        meshed(points, triangles, &vec![0; triangles.len()], &origins)
+    }
+
+    /// The surface with fewer triangles, still within the tolerance, closed and manifold by index; nothing moves
+    /// near the places `kept`. `origin` tells which of the origins a place of the surface has.
+    pub fn collapsed(
+        &self,
+        kept: &[DVec3],
+        origins: &[Origin],
+        origin: impl Fn(DVec3) -> u32 + Sync,
+    ) -> PolyMesh {
+        let Surface { points, triangles, .. } = &self.surface;
+        // Origins that are the same have no border between them.
+        let first = |o: &Origin| origins.iter().position(|p| p == o).unwrap_or(0) as u32;
+        let classes: Vec<u32> = origins.iter().map(first).collect();
+        let middle = |t: &[u32; 3]| t.map(|i| points[i as usize]).iter().sum::<DVec3>() / 3.0;
+        let label = |t: &[u32; 3]| match classes.iter().all(|c| *c == 0) {
+            true => 0,
+            false => classes[origin(middle(t)) as usize],
+        };
+        let labels: Vec<u32> = triangles.par_iter().map(label).collect();
+        let reach = |p: DVec3| KEPT * half_diagonal(&self.tree.bounds(self.tree.leaf(p)));
+        let around: Vec<(DVec3, f64)> = kept.iter().map(|&p| (p, reach(p))).collect();
+        let is_kept = |p: &DVec3| around.iter().any(|(q, r)| p.distance(*q) <= *r);
+        let fixed: Vec<bool> = points.par_iter().map(is_kept).collect();
+        let left = Collapse::new(&self.tree, self.tolerance, &self.surface, labels, &fixed).run();
+        meshed(points, &left.0, &left.1, origins)
     }
 
     /// Cuts the polygons where triangles cross, given a place of each crossing; where they are cut already,
