@@ -21,7 +21,7 @@ impl<'a> Local<'a> {
     /// let cube = Polyhedral::new(cuboid(DVec3::ZERO, DVec3::splat(8.0)).mesh()).unwrap();
     /// let above = Bounds { min: dvec3(1.0, 1.0, 9.0), max: dvec3(5.0, 5.0, 10.0) };
     /// let local = Local::new(&cube, &above);
-    /// assert_eq!(local.candidates(), Some(8)); // the top and three sides, none of the bottom
+    /// assert_eq!(local.candidates(), Some(8)); // of 12: the top and sides
     /// assert_eq!(local.nearest(dvec3(2.0, 3.0, 9.5)).distance, 1.5);
     /// ```
     pub fn new(whole: &'a Polyhedral, cell: &Bounds) -> Local<'a> {
