@@ -278,7 +278,7 @@ impl Model {
     }
 
     /// Notes what a body brought; `starts` are the lengths of facets, outlines and edges before it.
-    fn add_hull(&mut self, points: Range<usize>, starts: [usize; 3], convex: bool) {
+    pub fn add_hull(&mut self, points: Range<usize>, starts: [usize; 3], convex: bool) {
         let (min, max) = around(self.at[points.clone()].iter().copied());
         let [facets, outlines, edges] = starts;
         self.hulls.push(Hull {

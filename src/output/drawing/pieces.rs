@@ -7,7 +7,7 @@ use super::{
     folded::{Folded, Piece},
     lattice::Plane,
     links::NONE,
-    model::{Facet, Hull, Model, Outline},
+    model::{Facet, Model, Outline},
 };
 
 /// A side of a piece: its ends, the smaller first, the piece, and whether that runs from the smaller one.
@@ -88,18 +88,7 @@ impl Model {
             }
         }
         let points = base as usize..base as usize + folded.points.len();
-        let (min, max) = around(self.at[points.clone()].iter().copied());
-        let [facets, outlines, edges] = starts;
-        self.hulls.push(Hull {
-            points,
-            facets: facets..self.facets.len(),
-            outlines: outlines..self.outlines.len(),
-            edges: edges..edges,
-            min,
-            max,
-            convex: false,
-            reached: false,
-        });
+        self.add_hull(points, starts, false);
     }
 
     /// Adds the facets of a piece, a fan, and where it ends.

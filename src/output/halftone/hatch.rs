@@ -2,8 +2,8 @@
 //! direction.
 //!
 //! Lines of a layer are so near that all of them together would be too dark. Each has a rank, and is drawn where the tone
-//! is darker than that; about there it is broken, so that the mean tone is right. Where the parameter lines of a face come closer on paper than the pitch, only every second is drawn, or
-//! every fourth, and so on.
+//! is darker than that; about there it is broken, so that the mean tone is right. Where the parameter lines of a face come
+//! closer on paper than the pitch, only every second is drawn, or every fourth, and so on.
 
 use glam::{DVec2, DVec3, dvec2};
 
