@@ -3,7 +3,10 @@
 use glam::{DMat3, DQuat, DVec2, DVec3, EulerRot, dvec2, dvec3};
 use katachi::{
     geom::{CurvedGrid, FaceRef, Placement, PolyMesh, Tolerance, trig::cos_deg},
-    kernel::brep::primitive::{cuboid, sphere, torus},
+    kernel::{
+        brep::primitive::{cuboid, sphere, torus},
+        profile::{self, TextOptions},
+    },
     output::{
         drawing::{Camera, Scene, View, Window},
         halftone::{
@@ -256,6 +259,7 @@ fn screens_keep_the_mean_tone() {
         Screen::Hatch { pitch: 0.5, angle: 30.0 },
         Screen::Stipple { pitch: 0.5, seed: 1 },
         Screen::Diffusion { side: 0.2, atkinson: false },
+        Screen::Diffusion { side: 0.2, atkinson: true },
     ];
     for screen in screens {
         for level in 0..20 {
@@ -333,34 +337,36 @@ fn strokes_follow_round_faces() {
     }
 }
 
-/// Signs that are upright bars, the wider the later in the alphabet they stand, each in a place of its own.
-struct Bars;
+/// The signs of the embedded font.
+struct Font;
 
-impl Lettering for Bars {
+impl Lettering for Font {
     fn outlines(&self, text: &str, height: f64) -> Option<(Vec<Vec<DVec2>>, f64)> {
-        let code = f64::from(u32::from(text.chars().next()?) % 37);
-        let [from, to] = [0.02 * code, 0.02 * code + 0.005 + 0.01 * code].map(|x| x * height / 2.0);
-        let corners = [(from, 0.0), (to, 0.0), (to, height), (from, height)];
-        Some((vec![corners.map(|(x, y)| dvec2(x, y)).to_vec()], height * 0.6))
+        let options = TextOptions { size: height, ..TextOptions::default() };
+        let set = profile::text(text, &options, None).ok()?;
+        Some((set.region.contours().map(|contour| contour.points.clone()).collect(), set.width))
     }
 }
 
-/// Twenty tones come out of struck signs as twenty different amounts of ink, each more than the one before.
+/// Twenty tones come out of struck signs as twenty different amounts of ink, each more than the one before, and as dark
+/// as they should be where the most ink there is stands for black.
 #[test]
 fn levels_of_struck_signs_grow_in_ink() {
-    let levels = levels(&Bars, 20);
+    let levels = levels(&Font, 20);
     assert_eq!((levels.len(), levels[0].ink), (20, 0.0));
     let most = levels[19].ink;
-    let frame = frame(20.32, 320.0);
-    let mut before = -1.0;
-    for (number, level) in levels.iter().enumerate() {
-        let part = number as f64 / 19.0;
-        assert!((level.ink / most - part).abs() < 0.03, "{number}: {level:?} of {most}");
-        let pixels = vec![[1.0 - part as f32; 3]; (frame.size[0] * frame.size[1]) as usize];
-        let struck = overstrike(&Picture { frame, pixels }, &Bars, 20);
+    assert!(levels.windows(2).all(|pair| pair[0].ink < pair[1].ink));
+    // Forty cells by 24.
+    let frame = frame(50.8, 800.0);
+    let mut before = 0.0;
+    for step in 0..20 {
+        let tone = 0.95 - 0.9 * f64::from(step) / 19.0;
+        let pixels = vec![[tone as f32; 3]; (frame.size[0] * frame.size[1]) as usize];
+        let struck = overstrike(&Picture { frame, pixels }, &Font, 20);
         let made = struck.ink.picture().tones();
         let ink = 1.0 - made.iter().map(|t| f64::from(*t)).sum::<f64>() / made.len() as f64;
-        assert!(ink > before, "{number}: {ink} after {before}");
+        assert!(ink > before, "{tone}: {ink} after {before}");
+        assert!((ink / most - (1.0 - tone)).abs() < 0.01, "{tone}: {ink} of {most}");
         before = ink;
     }
 }

@@ -6,12 +6,14 @@
 //!
 //! # Departures
 //! The paper's levels are a table for one printer. Here the ink of every strike is measured on the outlines of a font,
-//! and the levels are those whose ink is nearest to equal steps.
+//! and the levels are those whose ink is nearest to equal steps from none to the most there is, which stands for black.
+//! What a cell is wrong by is passed on to its neighbours.
 
 use glam::{DVec2, dvec2};
 
 use super::{
     average::Average,
+    diffusion::{FLOYD_STEINBERG, scan},
     ink::{Ink, Mark},
     picture::Picture,
 };
@@ -57,7 +59,8 @@ pub struct Level {
     pub ink: f64,
 }
 
-/// What a sign covers of its cell, with its lower left corner at the origin.
+/// What a sign covers of its cell, with its lower left corner at the origin. As with a typewriter's, all signs are as wide
+/// as a cell: wider ones are made narrow.
 pub(super) struct Sign {
     sign: char,
     outlines: Vec<Contour>,
@@ -66,9 +69,16 @@ pub(super) struct Sign {
 pub(super) fn signs(lettering: &dyn Lettering) -> Vec<Sign> {
     let sign = |sign: char| {
         let (outlines, width) = lettering.outlines(&sign.to_string(), HEIGHT)?;
-        let shift = dvec2((CELL.x - width) / 2.0, BASE);
-        let moved =
-            |points: Vec<DVec2>| Contour::polygon(points.into_iter().map(|p| p + shift).collect());
+        let (low, high) = outlines
+            .iter()
+            .flatten()
+            .fold((0.0, width), |(low, high), p| (p.x.min(low), p.x.max(high)));
+        let narrowed = (CELL.x / (high - low)).min(1.0);
+        let shift = dvec2((CELL.x - (high - low) * narrowed) / 2.0 - low * narrowed, BASE);
+        let moved = |points: Vec<DVec2>| {
+            let place = |p: DVec2| dvec2(p.x * narrowed, p.y) + shift;
+            Contour::polygon(points.into_iter().map(place).collect())
+        };
         Some(Sign { sign, outlines: outlines.into_iter().map(moved).collect() })
     };
     SIGNS.chars().filter_map(sign).collect()
@@ -134,13 +144,17 @@ pub fn overstrike(picture: &Picture, lettering: &dyn Lettering, count: usize) ->
     let window = picture.frame.window;
     let size = ((window.max - window.min) / CELL).ceil();
     let mut text = Overstrike { lines: vec![], ink: Ink { frame: picture.frame, marks: vec![] } };
-    for row in 0..size.y as u32 {
+    let size = [size.x, size.y].map(|n| n as usize);
+    let corner = |row: usize, column: usize| {
+        window.min.with_y(window.max.y) + dvec2(column as f64, -(row as f64 + 1.0)) * CELL
+    };
+    let chosen = chosen(&levels, size, |row, column| {
+        1.0 - tones.over(corner(row, column) + CELL / 2.0, CELL)
+    });
+    for (row, chosen) in chosen.chunks(size[0].max(1)).enumerate() {
         let mut line = <[String; STRIKES]>::default();
-        for column in 0..size.x as u32 {
-            let corner = window.min.with_y(window.max.y)
-                + dvec2(f64::from(column), -f64::from(row + 1)) * CELL;
-            let dark = 1.0 - tones.over(corner + CELL / 2.0, CELL);
-            let level = &levels[(dark * (levels.len() - 1) as f64).round() as usize];
+        for (column, &level) in chosen.iter().enumerate() {
+            let (level, corner) = (&levels[level], corner(row, column));
             for (strike, line) in line.iter_mut().enumerate() {
                 line.push(level.signs.get(strike).copied().unwrap_or(' '));
             }
@@ -153,6 +167,30 @@ pub fn overstrike(picture: &Picture, lettering: &dyn Lettering, count: usize) ->
     }
     text
 }
+
+/// The level of each cell, row by row, given how dark it is of what levels can be. What a level is wrong by is passed on,
+/// so that the mean tone is right; paper stays clean.
+fn chosen(levels: &[Level], size: [usize; 2], dark: impl Fn(usize, usize) -> f64) -> Vec<usize> {
+    let most = levels.last().map_or(1.0, |level| level.ink).max(f64::MIN_POSITIVE);
+    let mut chosen = vec![0; size[0] * size[1]];
+    scan(size, FLOYD_STEINBERG, |row, column, owed| {
+        let dark = dark(row, column);
+        if dark < BLANK {
+            return 0.0;
+        }
+        let wanted = (dark + owed) * most;
+        let above = levels.partition_point(|level| level.ink < wanted).min(levels.len() - 1);
+        let below = above.saturating_sub(1);
+        let is_below = wanted - levels[below].ink < levels[above].ink - wanted;
+        let level = if is_below { below } else { above };
+        chosen[row * size[0] + column] = level;
+        (wanted - levels[level].ink) / most
+    });
+    chosen
+}
+
+/// Cells are paper below this part of black.
+const BLANK: f64 = 1.0 / 512.0;
 
 impl Overstrike {
     /// The text for a printer that goes back to the start of the line at a carriage return.
