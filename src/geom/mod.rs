@@ -3,6 +3,7 @@
 pub mod bounds;
 pub mod bvh;
 pub mod charge;
+pub mod curve;
 pub mod curved_grid;
 pub mod development;
 pub mod flatten;
@@ -32,6 +33,7 @@ pub mod wide;
 
 pub use bounds::Bounds;
 pub use charge::{Charge, Falloff};
+pub use curve::{Curve, CurveError};
 pub use curved_grid::{CurvedGrid, GridError};
 pub use formula::Formula;
 pub use mesh::{FaceRef, Origin, PolyMesh};
