@@ -14,6 +14,7 @@ pub const LIBRARY: SourceId = SourceId(u32::MAX);
 const PRELUDE: &[(&str, &str)] = &[
     ("std/algebra", include_str!("../../stdlib/algebra.kata")),
     ("std/constants", include_str!("../../stdlib/constants.kata")),
+    ("std/curves", include_str!("../../stdlib/curves.kata")),
     ("std/distance", include_str!("../../stdlib/distance.kata")),
     ("std/lists", include_str!("../../stdlib/lists.kata")),
     ("std/mathematics", include_str!("../../stdlib/mathematics.kata")),
@@ -24,6 +25,7 @@ const PRELUDE: &[(&str, &str)] = &[
     ("std/solids", include_str!("../../stdlib/solids.kata")),
     ("std/strings", include_str!("../../stdlib/strings.kata")),
     ("std/surfaces", include_str!("../../stdlib/surfaces.kata")),
+    ("std/sweeps", include_str!("../../stdlib/sweeps.kata")),
     ("std/testing", include_str!("../../stdlib/testing.kata")),
     ("std/views", include_str!("../../stdlib/views.kata")),
 ];

@@ -25,6 +25,7 @@ pub mod spherical_projection;
 pub mod stretch;
 pub mod sum;
 pub mod surface;
+pub mod sweep;
 pub mod tolerance;
 pub mod triangulate;
 pub mod trig;

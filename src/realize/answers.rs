@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::{Realizer, failure::failure, figure, import, measure};
+use super::{Realizer, failure::failure, figure, import, measure, sweep};
 use crate::{
     base::{Code, Diagnostic, FileError},
     geom::{
-        Raster, Tolerance,
+        CurvedGrid, Raster, Tolerance,
         spherical_projection::{Projection, solid_angle},
     },
     input,
@@ -17,7 +17,7 @@ use crate::{
         field::{Field, Polyhedral},
     },
     shape::{
-        Geometry, GeometryError, Kind, Measures, ShapeGraph, ShapeId,
+        Geometry, GeometryError, Kind, Measures, ShapeGraph, ShapeId, SweptSurface,
         geometry::{Data, Imported, InsideMethod},
         node::TextSpec,
     },
@@ -111,6 +111,10 @@ impl Geometry for Realizer<'_> {
                 Err(failure(Diagnostic::error(Code::BadFile, words).help(help)))
             }
         }
+    }
+
+    fn surface(&self, surface: &SweptSurface) -> Result<CurvedGrid, GeometryError> {
+        sweep::surface(surface, self.tolerance())
     }
 
     fn heights(&self, file: &str) -> Result<Raster, GeometryError> {

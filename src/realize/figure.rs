@@ -120,6 +120,7 @@ fn build(
             let holes: Vec<_> = holes.iter().map(|hole| hole.to_vec()).collect();
             profile::polygon(points, &holes).at(origin).map(Figure::flat)
         }
+        Node::Outline { curve } => profile::enclosed(curve, tolerance).at(origin).map(Figure::flat),
         Node::Text(spec) => text(realizer, spec, tolerance)
             .map_err(|e| placed(e, graph, id))
             .map(|t| Figure::flat(t.region)),
@@ -196,6 +197,15 @@ fn transformed(figure: &Figure, placement: &Placement) -> Option<Figure> {
 /// The region after a map of its plane, to the bit the same where the map changes nothing.
 pub fn moved(region: &Region, map: &DAffine2) -> Region {
     if *map == DAffine2::IDENTITY { region.clone() } else { profile::placed(region, map) }
+}
+
+/// The region of a figure as `revolve` and `sweep` see it: a plane that was moved within itself takes its region
+/// along.
+pub fn upright(figure: &Figure) -> Region {
+    let m = figure.frame.linear();
+    let t = figure.frame.offset();
+    let shift = glam::DVec2::new(t.dot(m.x_axis), t.dot(m.y_axis));
+    moved(&figure.region, &DAffine2::from_translation(shift))
 }
 
 /// The error for a placement that leaves no area.

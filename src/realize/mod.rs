@@ -25,6 +25,7 @@ mod plane;
 mod primitive;
 mod store;
 mod structure;
+mod sweep;
 #[cfg(test)]
 mod tests;
 
@@ -276,6 +277,9 @@ fn is_heavy(graph: &ShapeGraph, id: ShapeId) -> bool {
         | Node::ImportSolid { .. }
         | Node::Revolve { .. }
         | Node::Thickened { .. }
+        | Node::SweptAlong(_)
+        | Node::SweptBetween(_)
+        | Node::Loft { .. }
         | Node::Filled { .. }
         | Node::Metaball { .. }
         | Node::Formula { .. }

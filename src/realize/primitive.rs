@@ -1,18 +1,18 @@
 //! Solids that no set operation makes: primitives, extrusions, hulls, imports.
 
-use glam::{DAffine2, DVec2, DVec3};
+use glam::DVec3;
 
 use super::{
     Realizer, check_size,
     failure::{At, Coded, Made, failure},
-    figure::{self, Figure},
-    import, morphology,
+    figure, import, morphology,
     paint::Paint,
+    sweep,
 };
 use crate::{
     base::{Code, Diagnostic},
     convert::{contour, offset::fillet},
-    geom::{Bounds, Region, sides as count},
+    geom::{Bounds, sides as count},
     kernel::brep::{
         Polyhedron,
         extrude::{ExtrudeError, extrude},
@@ -130,10 +130,13 @@ pub fn make(realizer: &Realizer, graph: &ShapeGraph, unit: Stretched) -> Made<Po
                 Some(_) => (figure_of(*profile)?, tolerance),
                 None => bent(*profile)?,
             };
-            let region = upright(&figure);
+            let region = figure::upright(&figure);
             let solid = revolve(&region, *angle, *sides, tolerance).at(origin)?;
             Ok(painted(solid, &figure.paint))
         }
+        Node::SweptAlong(carried) => sweep::along(realizer, graph, unit, carried),
+        Node::SweptBetween(carried) => sweep::between(realizer, graph, unit, carried),
+        Node::Loft { sections, ruled } => sweep::loft(realizer, graph, unit, sections, *ruled),
         Node::Hull(list) => hull_of(realizer, graph, unit, list),
         Node::Thickened { surface, t } => sheet::thickened(surface, *t).at(origin),
         Node::Filled { surface, base } => sheet::filled(surface, *base).at(origin),
@@ -191,17 +194,8 @@ fn squared(a: u32, b: u32) -> usize {
     (a as usize).saturating_mul(b as usize)
 }
 
-fn painted(solid: Polyhedron, paint: &Paint) -> Polyhedron {
+pub fn painted(solid: Polyhedron, paint: &Paint) -> Polyhedron {
     if paint.is_none() { solid } else { Polyhedron::trusted(paint.applied(solid.mesh())) }
-}
-
-/// The region of a figure as `revolve` sees it: a plane that was moved within itself takes its region
-/// along.
-fn upright(figure: &Figure) -> Region {
-    let m = figure.frame.linear();
-    let t = figure.frame.offset();
-    let shift = DVec2::new(t.dot(m.x_axis), t.dot(m.y_axis));
-    figure::moved(&figure.region, &DAffine2::from_translation(shift))
 }
 
 impl Coded for FacesError {

@@ -128,7 +128,11 @@ impl Structure {
     /// The units that must be made before a unit.
     fn needs(&self, graph: &ShapeGraph, unit: Stretched) -> Vec<Stretched> {
         match graph.node(unit.id) {
-            Node::Extrude { .. } | Node::Revolve { .. } => figure_parts(graph, unit),
+            Node::Extrude { .. }
+            | Node::Revolve { .. }
+            | Node::SweptAlong(_)
+            | Node::SweptBetween(_)
+            | Node::Loft { .. } => figure_parts(graph, unit),
             _ if graph.kind(unit.id) == Kind::Profile => figure_parts(graph, unit),
             Node::Offset { child, .. } | Node::Fillet { child, .. } => {
                 unit_of(graph, *child, unit.stretch).into_iter().collect()

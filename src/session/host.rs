@@ -8,10 +8,10 @@ use super::{Session, hold};
 use crate::{
     base::{Diagnostic, FileError, Phase, SourceId, watch::during},
     eval::{Host, Loaded, library},
-    geom::Raster,
+    geom::{CurvedGrid, Raster},
     realize,
     shape::{
-        Geometry, GeometryError, Measures, ShapeGraph, ShapeId,
+        Geometry, GeometryError, Measures, ShapeGraph, ShapeId, SweptSurface,
         geometry::{Imported, InsideMethod},
         node::TextSpec,
     },
@@ -106,6 +106,10 @@ impl Geometry for Session<'_> {
 
     fn import(&self, file: &str) -> Result<Imported, GeometryError> {
         self.realizer.import(file)
+    }
+
+    fn surface(&self, surface: &SweptSurface) -> Result<CurvedGrid, GeometryError> {
+        self.realizer.surface(surface)
     }
 
     fn heights(&self, file: &str) -> Result<Raster, GeometryError> {

@@ -5,7 +5,8 @@ use glam::{DVec2, DVec3};
 use crate::{
     base::{Code, Diagnostic},
     geom::{
-        Contour, EdgeCurve, Placement, Region, Tolerance,
+        Contour, Curve, EdgeCurve, Placement, Region, Tolerance,
+        curve::{Piece, Turn},
         trig::{cos_deg, sin_deg},
     },
     output::drawing::Round,
@@ -43,9 +44,11 @@ impl Outline {
     }
 }
 
-/// Smallest and largest part of an arc, degrees.
-const FINEST: f64 = 0.1;
+/// Largest part of an arc, degrees.
 const COARSEST: f64 = 15.0;
+
+/// Chords of one curve at most.
+const MOST_CHORDS: u64 = 1_000_000;
 
 /// Lines of one hatching at most.
 const MOST_LINES: f64 = 20_000.0;
@@ -63,16 +66,19 @@ impl Tracer<'_> {
         figure.map(|figure| outlines(&figure)).map_err(|error| *error.diagnostic)
     }
 
-    /// The lines of a curve; chords of an arc stay within the tolerance.
+    /// The lines of a curve; their chords stay within the tolerance. Fails for more than [`MOST_CHORDS`] of them.
     pub fn curve(&self, curve: &CurveSpec) -> Result<Vec<Outline>, Diagnostic> {
         match curve {
-            CurveSpec::Polyline { points, closed } => {
-                let closing = points.first().filter(|_| *closed);
-                Ok(vec![points.iter().chain(closing).copied().collect::<Vec<_>>().into()])
-            }
-            CurveSpec::Arc { center, x, y, from, to } => {
-                let round = Round { center: *center, x: *x, y: *y };
-                Ok(vec![arc(round, *from, *to, self.realizer.tolerance())])
+            CurveSpec::Exact(curve) => {
+                let tolerance = self.realizer.tolerance();
+                let needed = curve.chords(tolerance);
+                if needed > MOST_CHORDS {
+                    let words = format!(
+                        "a curve needs {needed} chords at this tolerance; the limit is {MOST_CHORDS}"
+                    );
+                    return Err(Diagnostic::error(Code::Limit, words));
+                }
+                Ok(exact(curve, tolerance))
             }
             CurveSpec::Hatch { profile, pitch, angle, placement } => {
                 let figure = self.realizer.figure(self.graph, *profile);
@@ -92,16 +98,34 @@ impl Tracer<'_> {
     }
 }
 
-/// An arc between two angles in degrees.
-fn arc(round: Round, from: f64, to: f64, tolerance: Tolerance) -> Outline {
-    let r = round.x.length().max(round.y.length());
-    let half = libm::acos((1.0 - tolerance.mm() / r).clamp(0.0, 1.0)).to_degrees();
-    let parts = ((to - from).abs() / (2.0 * half).clamp(FINEST, COARSEST)).ceil();
-    let point = |i: u32| {
-        let angle = from + (to - from) * f64::from(i) / parts;
-        round.center + round.x * cos_deg(angle) + round.y * sin_deg(angle)
-    };
-    Outline { points: (0..=parts as u32).map(point).collect(), round: Some(round) }
+/// Parts that a piece has at least.
+fn least(piece: &Piece) -> u32 {
+    match piece {
+        Piece::Turn(turn) => ((turn.to - turn.from).abs() / COARSEST).ceil() as u32,
+        _ => 1,
+    }
+}
+
+/// The lines of a curve: each arc of an ellipse by itself, what is between them in one.
+fn exact(curve: &Curve, tolerance: Tolerance) -> Vec<Outline> {
+    let mut lines: Vec<Outline> = vec![];
+    for piece in curve.pieces() {
+        let round = match piece {
+            Piece::Turn(Turn { center, x, y, rise: DVec3::ZERO, .. }) => {
+                Some(Round { center: *center, x: *x, y: *y })
+            }
+            _ => None,
+        };
+        let parts = piece.chords(tolerance).max(least(piece));
+        let points = (0..=parts).map(|i| piece.at(f64::from(i) / f64::from(parts)));
+        match lines.last_mut() {
+            Some(line) if line.round.is_none() && round.is_none() => {
+                line.points.extend(points.skip(1))
+            }
+            _ => lines.push(Outline { points: points.collect(), round }),
+        }
+    }
+    lines
 }
 
 /// Lines at an angle, a pitch apart, one of them through the origin, as far as they are in a region; their number if

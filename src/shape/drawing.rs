@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 use super::{halftone::ShadeSpec, node::ShapeId};
 use crate::{
     base::Span,
-    geom::{CurvedGrid, Hidden, Method, Placement, View, mesh::Color},
+    geom::{Curve, CurvedGrid, Hidden, Method, Placement, View, mesh::Color},
 };
 
 /// A place in the source. Two descriptions made in different places are equal all the same.
@@ -22,29 +22,11 @@ impl PartialEq for Place {
     }
 }
 
-/// A curve in space.
+/// A curve in space, or several lines.
 #[derive(Clone, PartialEq, Debug)]
 pub enum CurveSpec {
-    /// Straight from point to point.
-    Polyline {
-        /// At least two points.
-        points: Vec<DVec3>,
-        /// Whether the last point joins the first.
-        closed: bool,
-    },
-    /// An arc of a circle or an ellipse: center + cos(t) x + sin(t) y.
-    Arc {
-        /// Centre.
-        center: DVec3,
-        /// From the centre to the point of angle 0.
-        x: DVec3,
-        /// From the centre to the point of angle 90.
-        y: DVec3,
-        /// Angle of its start.
-        from: f64,
-        /// Angle of its end; below `from` when it runs the other way.
-        to: f64,
-    },
+    /// One curve.
+    Exact(Curve),
     /// Parallel lines that fill a plane figure.
     Hatch {
         /// The figure.
@@ -62,17 +44,7 @@ impl CurveSpec {
     /// The curve after a placement.
     pub fn placed(&self, placement: &Placement) -> CurveSpec {
         match self {
-            CurveSpec::Polyline { points, closed } => CurveSpec::Polyline {
-                points: points.iter().map(|p| placement.point(*p)).collect(),
-                closed: *closed,
-            },
-            CurveSpec::Arc { center, x, y, from, to } => CurveSpec::Arc {
-                center: placement.point(*center),
-                x: placement.vector(*x),
-                y: placement.vector(*y),
-                from: *from,
-                to: *to,
-            },
+            CurveSpec::Exact(curve) => CurveSpec::Exact(curve.placed(placement)),
             CurveSpec::Hatch { profile, pitch, angle, placement: inner } => CurveSpec::Hatch {
                 profile: *profile,
                 pitch: *pitch,

@@ -11,8 +11,13 @@ use rustc_hash::FxHasher;
 use super::{
     drawing::CurveSpec,
     node::{Heal, Node, ShapeId, TextSpec},
+    sweep::{SweepAlong, SweepBetween},
 };
-use crate::geom::{Charge, CurvedGrid, Falloff, formula::Op};
+use crate::geom::{
+    Charge, Curve, CurvedGrid, Falloff,
+    curve::{Piece, Turn},
+    formula::Op,
+};
 
 /// The fingerprint of a node.
 pub(super) fn fingerprint(node: &Node) -> u64 {
@@ -72,8 +77,12 @@ impl Feed {
             }
             Node::Figured { figures, child } => {
                 (child, &figures.profiles).hash(&mut self.0);
-                figures.curves.iter().for_each(|curve| self.curve(curve));
+                figures.curves.iter().for_each(|curve| self.lines(curve));
             }
+            Node::Outline { curve } => self.curve(curve),
+            Node::SweptAlong(sweep) => self.along(sweep),
+            Node::SweptBetween(sweep) => self.between(sweep),
+            Node::Loft { sections, ruled } => (sections, ruled).hash(&mut self.0),
             Node::Filled { surface, base } => {
                 self.surface(surface);
                 base.iter().for_each(|z| self.real(*z));
@@ -154,18 +163,39 @@ impl Feed {
         surface.points().iter().for_each(|&p| self.space(p));
     }
 
-    fn curve(&mut self, curve: &CurveSpec) {
+    fn lines(&mut self, curve: &CurveSpec) {
         match curve {
-            CurveSpec::Polyline { points, .. } => points.iter().for_each(|&p| self.space(p)),
-            CurveSpec::Arc { center, x, y, from, to } => {
-                [*center, *x, *y].into_iter().for_each(|v| self.space(v));
-                self.sized(&[*from, *to], None);
-            }
+            CurveSpec::Exact(curve) => self.curve(curve),
             CurveSpec::Hatch { profile, pitch, angle, placement } => {
                 (profile, placement).hash(&mut self.0);
                 self.sized(&[*pitch, *angle], None);
             }
         }
+    }
+
+    fn curve(&mut self, curve: &Curve) {
+        for piece in curve.pieces() {
+            match piece {
+                Piece::Line(ends) => ends.iter().for_each(|&p| self.space(p)),
+                Piece::Bezier(points) => points.iter().for_each(|&p| self.space(p)),
+                Piece::Turn(turn) => {
+                    let Turn { center, x, y, rise, from, to } = *turn;
+                    [center, x, y, rise].into_iter().for_each(|v| self.space(v));
+                    self.sized(&[from, to], None);
+                }
+            }
+        }
+    }
+
+    fn along(&mut self, sweep: &SweepAlong) {
+        (sweep.profile, sweep.frame, sweep.corners, sweep.repair).hash(&mut self.0);
+        self.curve(&sweep.path);
+        self.sized(&[sweep.twist, sweep.scale], None);
+    }
+
+    fn between(&mut self, sweep: &SweepBetween) {
+        (&sweep.sections, sweep.stations, sweep.repair).hash(&mut self.0);
+        sweep.rails.iter().for_each(|rail| self.curve(rail));
     }
 
     fn sized(&mut self, numbers: &[f64], sides: Option<u32>) {

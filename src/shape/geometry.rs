@@ -7,10 +7,11 @@ use glam::{DMat3, DVec3};
 use super::{
     graph::ShapeGraph,
     node::{ShapeId, TextSpec},
+    sweep::SweptSurface,
 };
 use crate::{
     base::{Diagnostic, FileError},
-    geom::Raster,
+    geom::{CurvedGrid, Raster},
 };
 
 /// Measures of a solid's closed boundary, or of a profile's region.
@@ -130,6 +131,9 @@ pub trait Geometry {
 
     /// Hausdorff distance of the boundaries in mm.
     fn hausdorff(&self, graph: &ShapeGraph, a: ShapeId, b: ShapeId) -> Result<f64, GeometryError>;
+
+    /// The points of a swept surface, as close as the tolerance asks.
+    fn surface(&self, surface: &SweptSurface) -> Result<CurvedGrid, GeometryError>;
 
     /// Advance width of a text in mm.
     fn text_width(&self, text: &TextSpec) -> Result<f64, GeometryError>;

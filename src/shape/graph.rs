@@ -105,6 +105,7 @@ impl ShapeGraph {
             Node::Rect { .. }
             | Node::Ellipse { .. }
             | Node::Polygon { .. }
+            | Node::Outline { .. }
             | Node::Text(_)
             | Node::ImportProfile { .. }
             | Node::OffsetProfile { .. }

@@ -10,6 +10,7 @@ pub mod graph;
 pub mod halftone;
 pub mod node;
 mod stretched;
+pub mod sweep;
 
 pub use drawing::{CurveSpec, PageSpec, ViewSpec};
 pub use geometry::{Geometry, GeometryError, Measures};
@@ -17,3 +18,4 @@ pub use graph::ShapeGraph;
 pub use halftone::ShadeSpec;
 pub use node::{Kind, Node, ShapeId, SphereTest};
 pub use stretched::Stretched;
+pub use sweep::{SweepAlong, SweepBetween, SweptSurface};

@@ -4,8 +4,11 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::drawing::FiguresSpec;
-use crate::geom::{Charge, CurvedGrid, Formula, Placement, mesh::Color};
+use super::{
+    drawing::FiguresSpec,
+    sweep::{SweepAlong, SweepBetween},
+};
+use crate::geom::{Charge, Curve, CurvedGrid, Formula, Placement, mesh::Color};
 
 /// Names a node of one [`ShapeGraph`](super::ShapeGraph).
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -154,6 +157,17 @@ pub enum Node {
     },
     /// The convex hull of solids, or of profiles.
     Hull(Arc<[ShapeId]>),
+    /// A profile carried along a curve.
+    SweptAlong(Arc<SweepAlong>),
+    /// Closed sections carried along two curves.
+    SweptBetween(Arc<SweepBetween>),
+    /// A body through profiles.
+    Loft {
+        /// The profiles, at least two.
+        sections: Arc<[ShapeId]>,
+        /// Whether it runs straight from one to the next.
+        ruled: bool,
+    },
     /// A sheet about a surface, half of its thickness to each side.
     Thickened {
         /// The surface.
@@ -194,6 +208,11 @@ pub enum Node {
         points: Arc<[DVec2]>,
         /// The corners of its holes.
         holes: Arc<[Arc<[DVec2]>]>,
+    },
+    /// What a closed curve in the xy plane encloses.
+    Outline {
+        /// The curve.
+        curve: Arc<Curve>,
     },
     /// The outlines of a text.
     Text(Arc<TextSpec>),
@@ -295,6 +314,9 @@ impl Node {
             | Node::Difference(list)
             | Node::Intersection(list)
             | Node::Hull(list) => list,
+            Node::Loft { sections, .. } => sections,
+            Node::SweptBetween(sweep) => &sweep.sections,
+            Node::SweptAlong(sweep) => std::slice::from_ref(&sweep.profile),
             Node::Extrude { profile: child, .. }
             | Node::Revolve { profile: child, .. }
             | Node::OffsetProfile { profile: child, .. }

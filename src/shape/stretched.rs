@@ -6,7 +6,7 @@ use super::{
     graph::ShapeGraph,
     node::{Kind, Node, ShapeId},
 };
-use crate::geom::{Placement, Stretch};
+use crate::geom::{Placement, Stretch, curve::Piece};
 
 /// A shape with more curves than this, each counted as often as it stands in it, is made for few stretches: the
 /// next greater of a row. A graph shares nodes, and a shape that holds two scaled copies of one that holds two
@@ -54,6 +54,7 @@ impl ShapeGraph {
         let own = match self.node(whole.id) {
             Node::Transform { placement, .. } => self.stretch_of(placement, child),
             Node::Extrude { scale, .. } => Stretch::by(scale.max_element().max(1.0)),
+            Node::SweptAlong(sweep) => Stretch::by(sweep.scale.max(1.0)),
             _ => Stretch::ONE,
         };
         self.stretched(child, whole.stretch.times(own))
@@ -78,7 +79,11 @@ pub(super) fn curves(node: &Node, child: impl Fn(ShapeId) -> u32) -> u32 {
         | Node::Ellipse { sides, .. }
         | Node::Revolve { sides, .. } => sides.is_none(),
         Node::Extrude { twist, scale, .. } => *twist != 0.0 || scale.x != scale.y,
+        Node::Outline { curve } => curve.pieces().iter().any(|p| !matches!(p, Piece::Line(_))),
         Node::Text(_)
+        | Node::SweptAlong(_)
+        | Node::SweptBetween(_)
+        | Node::Loft { .. }
         | Node::ImportProfile { .. }
         | Node::OffsetProfile { .. }
         | Node::RoundProfile { .. }

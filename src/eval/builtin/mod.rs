@@ -21,6 +21,7 @@ mod shades;
 mod solids;
 mod strings;
 mod surfaces;
+mod sweeps;
 mod views;
 
 pub use files::data_value;
@@ -66,6 +67,7 @@ pub fn find(name: &str) -> Option<Native> {
         solids::TABLE,
         strings::TABLE,
         surfaces::TABLE,
+        sweeps::TABLE,
         views::TABLE,
     ];
     let mut entries = tables.into_iter().flatten();
@@ -107,7 +109,8 @@ impl Args<'_> {
         fail(code, self.span(i), message)
     }
 
-    fn wrong<T>(&self, i: usize, needed: &str) -> Outcome<T> {
+    /// Stops because an argument is of the wrong kind.
+    pub fn wrong<T>(&self, i: usize, needed: &str) -> Outcome<T> {
         let words = format!("`{}` needs {needed}, got {}", self.name(i), shown(self.value(i)));
         self.fail(i, Code::WrongKind, words)
     }

@@ -1,8 +1,9 @@
-//! `a.name`: keys of records, names of files, coordinates of points, `.width` of a text.
+//! `a.name`: keys of records, names of files, coordinates of points, `.width` of a text, `.vertices` of a curve.
 
 use std::sync::Arc;
 
 use super::super::{
+    builtin::point_value,
     evaluator::Evaluator,
     failure::{Outcome, fail},
     library::Index,
@@ -13,7 +14,7 @@ use super::super::{
 use super::{Frame, sequence::missing_key};
 use crate::{
     base::{self, Diagnostic, Span},
-    shape::{Node, ShapeId},
+    shape::{CurveSpec, Node, ShapeId},
     syntax::ast,
 };
 
@@ -57,6 +58,13 @@ impl Evaluator<'_> {
                 Ok(axis.and_then(|axis| list.get(axis).cloned()))
             }
             Value::Profile(id) if &*name.text == "width" => self.text_width(*id, name.span),
+            Value::Curve(curve) if &*name.text == "vertices" => Ok(match &**curve {
+                CurveSpec::Exact(curve) => {
+                    let points = curve.vertices().iter().map(|p| point_value(*p));
+                    Some(Value::list(points.collect()))
+                }
+                CurveSpec::Hatch { .. } => None,
+            }),
             _ => Ok(None),
         }
     }

@@ -59,6 +59,24 @@ symbols! {
     Wyvill = "WYVILL",
     /// Blinn's potential, exp(-(d / r)^2).
     Blinn = "BLINN",
+    /// A profile that turns as little as it can.
+    RotationMinimising = "ROTATION_MINIMISING",
+    /// A profile that does not turn.
+    Fixed = "FIXED",
+    /// A profile whose x points to the centre of curvature.
+    Frenet = "FRENET",
+    /// A profile whose y points upwards.
+    Upright = "UPRIGHT",
+    /// Through all sections.
+    Through = "THROUGH",
+    /// Half-way between sections.
+    Mid = "MID",
+    /// Corners cut in the plane between their sides.
+    Mitred = "MITRED",
+    /// Corners that are turned.
+    Rounded = "ROUNDED",
+    /// What overlaps is united.
+    Union = "UNION",
     /// Isometric: from (1, -1, 1).
     Iso = "ISO",
     /// From (1, -sqrt 7, 1).

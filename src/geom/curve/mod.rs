@@ -10,12 +10,17 @@
 
 mod nearest;
 mod piece;
+mod plane;
 mod through;
 
 use glam::DVec3;
 use thiserror::Error;
 
-pub use self::piece::{Jet, Piece, Turn};
+pub use self::{
+    piece::{Jet, Piece, Turn},
+    plane::{Flat, PlaneError},
+    through::slopes,
+};
 use super::{Placement, Tolerance};
 
 /// The most points that a curve may be given by.

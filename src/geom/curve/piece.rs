@@ -67,7 +67,7 @@ impl Turn {
     }
 
     /// Whether it has one radius and rises across its plane, if at all.
-    fn is_circular(&self) -> bool {
+    pub fn is_circular(&self) -> bool {
         let (a, b) = (self.x.length_squared(), self.y.length_squared());
         let slack = ROUND * a;
         let across = self.x.dot(self.rise).abs().max(self.y.dot(self.rise).abs());

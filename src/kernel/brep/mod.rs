@@ -17,6 +17,7 @@ pub mod revolve;
 mod ridge;
 mod separation;
 pub mod sheet;
+pub mod sweep;
 mod threads;
 
 pub use polyhedron::{Defect, Polyhedron};

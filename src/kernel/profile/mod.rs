@@ -5,6 +5,7 @@
 //! [`geom::overlay`](crate::geom::overlay), where the precision is stated.
 
 pub mod algebra;
+pub mod curve;
 pub mod error;
 pub mod hull;
 pub mod measure;
@@ -17,6 +18,7 @@ pub mod round;
 pub mod text;
 
 pub use algebra::{difference, intersection, union};
+pub use curve::enclosed;
 pub use error::ProfileError;
 pub use hull::hull;
 pub use offset::offset;

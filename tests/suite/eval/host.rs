@@ -6,9 +6,9 @@ use glam::{DMat3, DVec3};
 use katachi::{
     base::{Code, Diagnostic, FileError, Shelf, SourceMap, World},
     eval::{Evaluator, Host, InstanceId, Limits, Loaded, Override, library},
-    geom::Raster,
+    geom::{CurvedGrid, Raster},
     shape::{
-        Geometry, GeometryError, Measures, Node, ShapeGraph, ShapeId,
+        Geometry, GeometryError, Measures, Node, ShapeGraph, ShapeId, SweptSurface,
         geometry::{Data, Imported, InsideMethod},
         node::TextSpec,
     },
@@ -141,6 +141,11 @@ impl Geometry for Bench<'_> {
             Some("json") => Imported::Data(Data::List(vec![Data::Number(1.5), Data::Null])),
             _ => Imported::Solid,
         })
+    }
+
+    fn surface(&self, _: &SweptSurface) -> Result<CurvedGrid, GeometryError> {
+        let row = |x: f64| vec![DVec3::X * x, DVec3::X * x + DVec3::Y];
+        Ok(CurvedGrid::new(&[row(0.0), row(1.0)], false, false).expect("a cell"))
     }
 
     fn heights(&self, _: &str) -> Result<Raster, GeometryError> {

@@ -1,0 +1,156 @@
+//! Bodies through sections.
+
+use glam::DVec3;
+
+use super::{
+    SweepError,
+    rings::{Builder, Step, Swept},
+    sections::{Alike, Placed, alike},
+    sound,
+    stations::{Station, stations},
+};
+use crate::{
+    geom::{Surface, Tolerance, curve::slopes, sweep::Repair},
+    kernel::brep::Polyhedron,
+};
+
+/// The body through sections in their order: between two of them its surface is ruled; through three or more every point
+/// runs along a cubic spline, or straight if it is `ruled`. Contours with as many corners are joined corner by corner,
+/// others by the parts of their length. The boundary keeps within `tolerance` of that surface; the ends are the first and
+/// the last section.
+///
+/// Fails for fewer than two sections, sections that are empty or have different numbers of contours, and where the body
+/// crosses itself.
+///
+/// ```
+/// use glam::{DVec2, DVec3};
+/// use katachi::geom::{Contour, Piece, Placement, Region, Tolerance};
+/// use katachi::kernel::brep::{measure::volume, sweep::{Placed, loft}};
+/// let square = |r: f64| {
+///     let corners = [[-r, -r], [r, -r], [r, r], [-r, r]].map(DVec2::from).to_vec();
+///     Region { pieces: vec![Piece { outer: Contour::polygon(corners), holes: vec![] }] }
+/// };
+/// let (low, high) = (square(2.0), square(1.0));
+/// let sections = [
+///     Placed { region: &low, frame: Placement::IDENTITY },
+///     Placed { region: &high, frame: Placement::translation(DVec3::Z * 3.0) },
+/// ];
+/// let frustum = loft(&sections, false, Tolerance::DEFAULT).unwrap();
+/// assert!((volume(&frustum) - 28.0).abs() < 1e-12);
+/// ```
+pub fn loft(
+    sections: &[Placed],
+    ruled: bool,
+    tolerance: Tolerance,
+) -> Result<Polyhedron, SweepError> {
+    if sections.len() < 2 {
+        return Err(SweepError::Sections { found: sections.len(), needed: 2 });
+    }
+    let contours = alike(sections)?;
+    let skins: Vec<Skin> =
+        contours.iter().map(|contour| Skin::new(contour.rings.clone(), ruled)).collect();
+    let steps: Vec<f64> = (0..sections.len()).map(|i| i as f64).collect();
+    let ring = |place: f64| Ok(skins.iter().flat_map(|skin| skin.at(place)).collect());
+    let all = stations(&steps, true, tolerance, &ring)?;
+    let solid = body(&contours, &all, !ruled, false);
+    let way = sections
+        .iter()
+        .zip(0..)
+        .map(|(section, i)| (f64::from(i) / (sections.len() - 1) as f64, section.middle()));
+    sound(solid, Repair::No, way)
+}
+
+/// The solid of contours whose points at all stations stand one contour after the other. Unless it is `smooth` there is an
+/// edge at every whole place. A closed one ends where it starts and has no ends.
+pub(super) fn body(
+    contours: &[Alike],
+    all: &[Station],
+    is_smooth: bool,
+    is_closed: bool,
+) -> Polyhedron {
+    let size = all.iter().flat_map(|s| &s.points).fold(0.0, |size: f64, p| size.max(p.length()));
+    let steps: Vec<Step> = all
+        .windows(2)
+        .map(|pair| {
+            let middle = (pair[0].place + pair[1].place) / 2.0;
+            Step { run: if is_smooth { 0 } else { middle as usize }, is_flat: false }
+        })
+        .collect();
+    let mut builder = Builder::new(size, &|_, _| Surface::Smooth);
+    let mut first = 0;
+    let mut ends: [Vec<Vec<u32>>; 2] = Default::default();
+    for contour in contours {
+        if !contour.is_hole && !is_closed {
+            cap(&mut builder, std::mem::take(&mut ends));
+        }
+        let count = contour.curves.len();
+        let own: Vec<Station> = all
+            .iter()
+            .map(|s| Station { place: s.place, points: s.points[first..first + count].to_vec() })
+            .collect();
+        first += count;
+        let closing = is_closed.then_some(0);
+        let swept = Swept { stations: &own, curves: &contour.curves, closing };
+        let [start, end] = builder.add(&swept, &steps);
+        ends[0].push(start);
+        ends[1].push(end);
+    }
+    if !is_closed {
+        cap(&mut builder, ends);
+    }
+    builder.solid()
+}
+
+fn cap(builder: &mut Builder, [start, end]: [Vec<Vec<u32>>; 2]) {
+    builder.cap(start, true);
+    builder.cap(end, false);
+}
+
+/// Rings of points with a curve through the points of each number.
+pub(super) struct Skin {
+    rings: Vec<Vec<DVec3>>,
+    /// For each ring the slope of each point over the steps; none where it is ruled.
+    slopes: Option<Vec<Vec<DVec3>>>,
+    /// The mean distance from ring to ring.
+    steps: Vec<f64>,
+}
+
+impl Skin {
+    /// Straight between two rings, or everywhere if it is ruled; else splines over the mean distances of the rings.
+    pub fn new(rings: Vec<Vec<DVec3>>, ruled: bool) -> Skin {
+        let mean = |pair: &[Vec<DVec3>]| {
+            let sum: f64 = pair[0].iter().zip(&pair[1]).map(|(a, b)| a.distance(*b)).sum();
+            (sum / pair[0].len() as f64).max(f64::MIN_POSITIVE)
+        };
+        let steps: Vec<f64> = rings.windows(2).map(mean).collect();
+        if ruled || rings.len() < 3 {
+            return Skin { rings, slopes: None, steps };
+        }
+        let mut found = vec![vec![]; rings.len()];
+        for j in 0..rings[0].len() {
+            let column: Vec<DVec3> = rings.iter().map(|ring| ring[j]).collect();
+            let slopes = slopes(&column, &steps, [None; 2]);
+            found.iter_mut().zip(slopes).for_each(|(list, slope)| list.push(slope));
+        }
+        Skin { rings, slopes: Some(found), steps }
+    }
+
+    /// The points at a place: ring 1 and three quarters is 1.75.
+    pub fn at(&self, place: f64) -> Vec<DVec3> {
+        let i = (place as usize).min(self.rings.len() - 2);
+        let t = place - i as f64;
+        let (a, b) = (&self.rings[i], &self.rings[i + 1]);
+        if t == 0.0 || t == 1.0 {
+            return if t == 0.0 { a.clone() } else { b.clone() };
+        }
+        let straight = || a.iter().zip(b).map(|(a, b)| a.lerp(*b, t));
+        let Some(slopes) = &self.slopes else { return straight().collect() };
+        // Hermite's form: the line between the ends and what the slopes differ from it.
+        let (u, h) = (1.0 - t, self.steps[i]);
+        let bend = |j: usize| {
+            let chord = b[j] - a[j];
+            ((slopes[i][j] * h - chord) * u - (slopes[i + 1][j] * h - chord) * t) * (t * u)
+        };
+        straight().enumerate().map(|(j, p)| p + bend(j)).collect()
+    }
+}
