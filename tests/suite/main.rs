@@ -24,3 +24,4 @@ mod scad;
 mod sheets;
 mod sources;
 mod stretch;
+mod sweeps;

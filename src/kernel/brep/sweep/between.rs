@@ -10,8 +10,8 @@
 //! # Departures
 //! - After R(v), the share v of the turn from chord a to chord b, comes the smallest turn onto the chord c(v), so that
 //!   sections keep both rails where the chord does not turn evenly in one plane.
-//! - With a parallel to b there is no turn; with a opposite to b the turn is about the direction of rail 1, as far as that is
-//!   across the chord; where the rails meet, the section shrinks to the point.
+//! - The turn goes in steps of less than 60 degrees of the chords between, so that rails may go half around an axis, where b is
+//!   opposite to a, or further. With a parallel to b there is no turn; where the rails meet, the section shrinks to the point.
 //! - The surface passes through every section: between two of them as the formula says; through three or more the
 //!   sections, brought into the frame of the first chord, run along cubic splines in place of straight lines. The paper's
 //!   stations, which meet the first and last section only, are [`Stations::Mid`].
@@ -95,7 +95,9 @@ pub fn between(
         places.push([place(0)?, place(1)?]);
     }
     check_order(way.rails, &places)?;
-    let contours = alike(sections)?;
+    let ahead = |place: &[f64; 2]| (0..2).map(|i| way.rails[i].tangent(place[i])).sum::<DVec3>();
+    let directions: Vec<DVec3> = places.iter().map(ahead).collect();
+    let contours = alike(sections, &directions)?;
     let rings: Vec<Vec<DVec3>> = (0..sections.len())
         .map(|i| contours.iter().flat_map(|contour| contour.rings[i].iter().copied()).collect())
         .collect();
@@ -210,7 +212,8 @@ fn crossing(rail: &Curve, at: DVec3, normal: DVec3) -> Option<f64> {
         }
     }
     let distance = |place: f64| rail.at(place).distance_squared(at);
-    found.into_iter().min_by(|a, b| distance(*a).total_cmp(&distance(*b)))
+    let passes = |place: &f64| rail.tangent(*place).dot(normal).abs() > ON;
+    found.into_iter().filter(passes).min_by(|a, b| distance(*a).total_cmp(&distance(*b)))
 }
 
 /// The points of open sections that belong together.
@@ -243,13 +246,26 @@ fn rows(sections: &[Curve], tolerance: Tolerance) -> Vec<Vec<DVec3>> {
     sections.iter().map(|s| parts.iter().map(|part| s.at(s.place(*part))).collect()).collect()
 }
 
+/// Chords of one step turn by less than 60 degrees.
+const STEADY: f64 = 0.5;
+
+/// Steps that are taken between two stations at most.
+const MOST_STEPS: usize = 64;
+
+/// The way between two stations, in equal steps in each of which the chord turns little.
+struct Span {
+    from: [f64; 2],
+    to: [f64; 2],
+    /// The chord at the start of each step, and at the end.
+    chords: Vec<DVec3>,
+    /// The turn from the first section's frame there.
+    turns: Vec<DMat3>,
+}
+
 /// Sections on their way along two rails.
 struct Carried<'a> {
     rails: Rails<'a>,
-    /// Places on both rails, from the start of the rails to their end.
-    places: Vec<[f64; 2]>,
-    /// The turn of the first section's chord to that of each station.
-    turns: Vec<DMat3>,
+    spans: Vec<Span>,
     /// The direction of the first section's chord.
     along: DVec3,
     /// The points of each station relative to rail 1, in the frame of the first section's chord, and after them the chord
@@ -271,65 +287,73 @@ impl<'a> Carried<'a> {
             true => [0, 1].map(|rail| rails[rail].part(place[rail])),
             false => place,
         };
-        let mut carried = Carried {
-            rails,
-            places: places.into_iter().map(own).collect(),
-            turns: vec![],
-            along: DVec3::X,
-            skin: Skin::new(vec![], true),
-            by_length,
-        };
-        carried.turn();
-        let mut rings = carried.settled(rings);
+        let places: Vec<[f64; 2]> = places.into_iter().map(own).collect();
+        let skin = Skin::new(vec![], true);
+        let mut carried = Carried { rails, spans: vec![], along: DVec3::X, skin, by_length };
+        carried.along = carried.chord(places[0]).normalize_or(DVec3::X);
+        carried.go(&places);
+        let mut rings = carried.settled(&places, rings);
         if rule == Stations::Mid {
-            rings = carried.to_middles(&rings);
-            carried.turn();
+            let (middles, means) = middles(&places, &rings);
+            carried.go(&middles);
+            rings = means;
         }
         carried.carry_on(&mut rings);
         carried.skin = Skin::new(rings, rule == Stations::Mid);
         carried
     }
 
-    /// The turns from the first chord's frame to those of all stations, chord by chord.
-    fn turn(&mut self) {
-        let chords: Vec<DVec3> = self.places.iter().map(|place| self.chord(*place)).collect();
-        self.along = chords[0].normalize_or(DVec3::X);
-        self.turns = vec![DMat3::IDENTITY];
-        for (i, pair) in chords.windows(2).enumerate() {
-            let share = self.share([self.places[i], self.places[i + 1]], pair, 1.0);
-            self.turns.push(share * self.turns[i]);
+    /// Sets out from station to station.
+    fn go(&mut self, places: &[[f64; 2]]) {
+        self.spans.clear();
+        let mut turn = DMat3::IDENTITY;
+        for pair in places.windows(2) {
+            let span = self.span([pair[0], pair[1]], turn);
+            turn = span.end();
+            self.spans.push(span);
         }
     }
 
+    /// The way between two stations that starts with a turn.
+    fn span(&self, [from, to]: [[f64; 2]; 2], start: DMat3) -> Span {
+        let mut steps = 1;
+        let chords = loop {
+            let at = |j: usize| mixed(from, to, j as f64 / steps as f64);
+            let chords: Vec<DVec3> = (0..=steps).map(|j| self.chord(at(j))).collect();
+            let steady = chords.windows(2).all(|pair| {
+                let lengths = pair[0].length() * pair[1].length();
+                pair[0].dot(pair[1]) >= STEADY * lengths
+            });
+            let halves = chords.windows(2).enumerate().all(|(j, pair)| {
+                let middle = self.chord(mixed(from, to, (j as f64 + 0.5) / steps as f64));
+                pair.iter().all(|end| middle.dot(*end) >= STEADY * middle.length() * end.length())
+            });
+            if (steady && halves) || steps >= MOST_STEPS {
+                break chords;
+            }
+            steps *= 2;
+        };
+        let mut turns = vec![start];
+        for (j, pair) in chords.windows(2).enumerate() {
+            turns.push(share([pair[0], pair[1]], 1.0) * turns[j]);
+        }
+        Span { from, to, chords, turns }
+    }
+
     /// The points of all stations in the frame of the first chord, each with its chord.
-    fn settled(&self, rings: Vec<Vec<DVec3>>) -> Vec<Vec<DVec3>> {
+    fn settled(&self, places: &[[f64; 2]], rings: Vec<Vec<DVec3>>) -> Vec<Vec<DVec3>> {
+        let turn = |i: usize| if i == 0 { DMat3::IDENTITY } else { self.spans[i - 1].end() };
         let own = rings.into_iter().enumerate().map(|(i, ring)| {
-            let (base, back) = (self.on(0, self.places[i][0]), self.turns[i].transpose());
-            let chord = self.along * self.chord(self.places[i]).length();
+            let (base, back) = (self.on(0, places[i][0]), turn(i).transpose());
+            let chord = self.along * self.chord(places[i]).length();
             ring.into_iter().map(|p| back * (p - base)).chain([chord]).collect()
         });
         own.collect()
     }
 
-    /// The paper's stations: half-way between neighbours, with the mean of their sections; the first and the last stay.
-    fn to_middles(&mut self, rings: &[Vec<DVec3>]) -> Vec<Vec<DVec3>> {
-        let last = self.places.len() - 1;
-        let (mut places, mut means) = (vec![self.places[0]], vec![rings[0].clone()]);
-        for i in 1..last - 1 {
-            let (a, b) = (self.places[i], self.places[i + 1]);
-            places.push([0, 1].map(|rail| a[rail].midpoint(b[rail])));
-            let pairs = rings[i].iter().zip(&rings[i + 1]);
-            means.push(pairs.map(|(p, q)| p.midpoint(*q)).collect());
-        }
-        places.push(self.places[last]);
-        means.push(rings[last].clone());
-        self.places = places;
-        means
-    }
-
     /// Whether the rails are closed, and the sections with them.
     fn is_closed(&self) -> bool {
-        self.rails.iter().all(|rail| rail.is_closed()) && self.places[0] == [0.0; 2]
+        self.rails.iter().all(|rail| rail.is_closed()) && self.spans[0].from == [0.0; 2]
     }
 
     /// Carries the first section back to the start of the rails, and the last one on to their end; on closed rails the last
@@ -339,41 +363,35 @@ impl<'a> Carried<'a> {
             true => [1.0; 2],
             false => self.rails.map(|rail| rail.pieces().len() as f64),
         };
-        let first = self.places[0];
+        let first = self.spans[0].from;
         if first.iter().all(|place| *place > ON) {
-            let chords = [[0.0; 2], first].map(|place| self.chord(place));
-            let share = self.share([[0.0; 2], first], &chords, 1.0);
-            self.turns.insert(0, share.transpose());
-            self.places.insert(0, [0.0; 2]);
+            let mut span = self.span([[0.0; 2], first], DMat3::IDENTITY);
+            let back = span.end().transpose();
+            span.turns.iter_mut().for_each(|turn| *turn *= back);
+            self.spans.insert(0, span);
             rings.insert(0, rings[0].clone());
         }
-        let count = self.places.len();
-        let last = self.places[count - 1];
-        if (0..2).all(|rail| ends[rail] - last[rail] > ON) {
-            let chords = [last, ends].map(|place| self.chord(place));
-            let share = self.share([last, ends], &chords, 1.0);
-            self.turns.push(share * self.turns[count - 1]);
-            let next = if self.is_closed() { rings[0].clone() } else { rings[count - 1].clone() };
-            self.places.push(ends);
-            rings.push(next);
+        let last = &self.spans[self.spans.len() - 1];
+        if (0..2).all(|rail| ends[rail] - last.to[rail] > ON) {
+            let span = self.span([last.to, ends], last.end());
+            let from = if self.is_closed() { 0 } else { rings.len() - 1 };
+            self.spans.push(span);
+            rings.push(rings[from].clone());
         }
     }
 
     /// Places where stations must stand: sections, and the ends of the rails' pieces.
     fn breaks(&self) -> Vec<f64> {
-        let mut breaks: Vec<f64> = (0..self.places.len()).map(|i| i as f64).collect();
-        for (i, pair) in self.places.windows(2).enumerate() {
+        let mut breaks: Vec<f64> = (0..=self.spans.len()).map(|i| i as f64).collect();
+        for (i, span) in self.spans.iter().enumerate() {
             for rail in 0..2 {
-                let (from, to) = (pair[0][rail], pair[1][rail]);
-                let joints: Vec<f64> = match self.by_length {
-                    true => (1..self.rails[rail].pieces().len())
-                        .map(|joint| self.rails[rail].part(joint as f64))
-                        .collect(),
-                    false => {
-                        (1..self.rails[rail].pieces().len()).map(|joint| joint as f64).collect()
-                    }
+                let (from, to) = (span.from[rail], span.to[rail]);
+                let joint = |joint: usize| match self.by_length {
+                    true => self.rails[rail].part(joint as f64),
+                    false => joint as f64,
                 };
-                let inner = joints.into_iter().filter(|joint| *joint > from && *joint < to);
+                let joints = (1..self.rails[rail].pieces().len()).map(joint);
+                let inner = joints.filter(|joint| *joint > from && *joint < to);
                 breaks.extend(inner.map(|joint| i as f64 + (joint - from) / (to - from)));
             }
         }
@@ -382,10 +400,10 @@ impl<'a> Carried<'a> {
         breaks
     }
 
-    /// The interval of a place and the share of it.
-    fn part(&self, v: f64) -> (usize, f64) {
-        let i = (v as usize).min(self.places.len() - 2);
-        (i, v - i as f64)
+    /// The span of a place and the share of it.
+    fn part(&self, v: f64) -> (&Span, f64) {
+        let i = (v as usize).min(self.spans.len() - 1);
+        (&self.spans[i], v - i as f64)
     }
 
     /// The point of a rail at a place of its own kind.
@@ -398,35 +416,17 @@ impl<'a> Carried<'a> {
 
     /// The point of a rail at a place of the way.
     fn rail(&self, rail: usize, v: f64) -> DVec3 {
-        let (i, t) = self.part(v);
-        let (from, to) = (self.places[i][rail], self.places[i + 1][rail]);
-        self.on(rail, if t == 1.0 { to } else { from + (to - from) * t })
+        let (span, t) = self.part(v);
+        self.on(rail, mixed(span.from, span.to, t)[rail])
     }
 
     fn chord(&self, [a, b]: [f64; 2]) -> DVec3 {
         self.on(1, b) - self.on(0, a)
     }
 
-    /// R(v): the share t of the turn from one chord to the next.
-    fn share(&self, places: [[f64; 2]; 2], chords: &[DVec3], t: f64) -> DMat3 {
-        let [Some(a), Some(b)] = [chords[0], chords[1]].map(DVec3::try_normalize) else {
-            return DMat3::IDENTITY;
-        };
-        let cosine = a.dot(b).clamp(-1.0, 1.0);
-        let axis = a.cross(b).try_normalize().or_else(|| {
-            // Opposite chords turn about the way of rail 1; parallel ones do not turn.
-            let way = self.on(0, places[1][0]) - self.on(0, places[0][0]);
-            (cosine < 0.0).then(|| (way - a * way.dot(a)).normalize_or(a.any_orthonormal_vector()))
-        });
-        match axis {
-            Some(axis) => about(axis, acos_deg(cosine) * t),
-            None => DMat3::IDENTITY,
-        }
-    }
-
     /// The points at a place of the way.
     fn at(&self, v: f64) -> Vec<DVec3> {
-        let (i, t) = self.part(v);
+        let (span, t) = self.part(v);
         let base = self.rail(0, v);
         let chord = self.rail(1, v) - base;
         let size = self.rails[0].length() + self.rails[1].length();
@@ -435,13 +435,56 @@ impl<'a> Carried<'a> {
         if chord.length() <= NONE * size || own_chord <= 0.0 {
             return vec![base; own.len()];
         }
-        let places = [self.places[i], self.places[i + 1]];
-        let turn = self.share(places, &places.map(|place| self.chord(place)), t) * self.turns[i];
+        let turn = span.turn(t);
         let (from, to) = ((turn * self.along).normalize(), chord.normalize());
         let stretch = chord.length() / own_chord;
         let place = |p: DVec3| base + smallest_turn(from, to, turn * p) * stretch;
         own.into_iter().map(place).collect()
     }
+}
+
+impl Span {
+    fn end(&self) -> DMat3 {
+        self.turns[self.turns.len() - 1]
+    }
+
+    /// The turn from the first section's frame at a share of the way.
+    fn turn(&self, t: f64) -> DMat3 {
+        let steps = self.chords.len() - 1;
+        let along = t * steps as f64;
+        let j = (along as usize).min(steps - 1);
+        share([self.chords[j], self.chords[j + 1]], along - j as f64) * self.turns[j]
+    }
+}
+
+/// R(v): the share t of the turn from one chord to the next; none between parallel ones, and where there is no chord.
+fn share(chords: [DVec3; 2], t: f64) -> DMat3 {
+    let [Some(a), Some(b)] = chords.map(DVec3::try_normalize) else {
+        return DMat3::IDENTITY;
+    };
+    match a.cross(b).try_normalize() {
+        Some(axis) => about(axis, acos_deg(a.dot(b).clamp(-1.0, 1.0)) * t),
+        None => DMat3::IDENTITY,
+    }
+}
+
+/// Places on both rails between two others.
+fn mixed(from: [f64; 2], to: [f64; 2], t: f64) -> [f64; 2] {
+    [0, 1].map(|rail| if t == 1.0 { to[rail] } else { from[rail] + (to[rail] - from[rail]) * t })
+}
+
+/// The paper's stations: half-way between neighbours, with the mean of their sections; the first and the last stay.
+fn middles(places: &[[f64; 2]], rings: &[Vec<DVec3>]) -> (Vec<[f64; 2]>, Vec<Vec<DVec3>>) {
+    let last = places.len() - 1;
+    let (mut found, mut means) = (vec![places[0]], vec![rings[0].clone()]);
+    for i in 1..last - 1 {
+        found.push(mixed(places[i], places[i + 1], 0.5));
+        let pairs = rings[i].iter().zip(&rings[i + 1]);
+        means.push(pairs.map(|(p, q)| p.midpoint(*q)).collect());
+    }
+    found.push(places[last]);
+    means.push(rings[last].clone());
+    (found, means)
 }
 
 /// The rotation about a unit axis.

@@ -46,7 +46,7 @@ pub fn loft(
     if sections.len() < 2 {
         return Err(SweepError::Sections { found: sections.len(), needed: 2 });
     }
-    let contours = alike(sections)?;
+    let contours = alike(sections, &directions(sections))?;
     let skins: Vec<Skin> =
         contours.iter().map(|contour| Skin::new(contour.rings.clone(), ruled)).collect();
     let steps: Vec<f64> = (0..sections.len()).map(|i| i as f64).collect();
@@ -59,6 +59,26 @@ pub fn loft(
         .map(|(section, i)| (f64::from(i) / (sections.len() - 1) as f64, section.middle()));
     sound(solid, Repair::No, way)
 }
+
+/// The way at each section: from the middle of the one before to that of the next; where that runs along the section, the
+/// side on which the one before is left.
+fn directions(sections: &[Placed]) -> Vec<DVec3> {
+    let middles: Vec<DVec3> = sections.iter().map(Placed::middle).collect();
+    let last = middles.len() - 1;
+    let mut found: Vec<DVec3> = vec![];
+    for (i, section) in sections.iter().enumerate() {
+        let normal = section.frame.vector(DVec3::Z);
+        let ways = [(i, (i + 1).min(last)), (i.saturating_sub(1), i)];
+        let steps = ways.map(|(from, to)| (middles[to] - middles[from]).normalize_or_zero());
+        let side: f64 = steps.iter().map(|step| step.dot(normal)).sum();
+        let before = found.last().copied().unwrap_or(normal);
+        found.push(if side.abs() > LEVEL { normal * side } else { normal * before.dot(normal) });
+    }
+    found
+}
+
+/// A step runs along a section when the sine of the angle between them is below this.
+const LEVEL: f64 = 1e-6;
 
 /// The solid of contours whose points at all stations stand one contour after the other. Unless it is `smooth` there is an
 /// edge at every whole place. A closed one ends where it starts and has no ends.

@@ -137,17 +137,15 @@ impl Loop {
 }
 
 /// Makes sections alike: contours with as many corners corner by corner, others by the parts of their length. Each starts
-/// where it is nearest to the one before. Fails where they are made of different numbers of contours.
-pub(super) fn alike(sections: &[Placed]) -> Result<Vec<Alike>, SweepError> {
-    let middles: Vec<DVec3> = sections.iter().map(Placed::middle).collect();
-    let last = sections.len() - 1;
+/// where it is nearest to the one before. `directions` are those of the way at each section. Fails where they are made of
+/// different numbers of contours.
+pub(super) fn alike(sections: &[Placed], directions: &[DVec3]) -> Result<Vec<Alike>, SweepError> {
     let mut all: Vec<Vec<(Loop, bool)>> = vec![];
     for (i, section) in sections.iter().enumerate() {
         if section.region.is_empty() {
             return Err(SweepError::EmptyProfile);
         }
-        let direction = middles[(i + 1).min(last)] - middles[i.saturating_sub(1)];
-        let contours = section.contours(direction);
+        let contours = section.contours(directions[i]);
         if let Some(first) = all.first().filter(|first| first.len() != contours.len()) {
             return Err(SweepError::Unlike {
                 section: i,
