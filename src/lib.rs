@@ -57,7 +57,7 @@
 //! | room | what it does |
 //! |---|---|
 //! | [`base`] | places in source text, diagnostics as data, the one door to files |
-//! | [`geom`] | what all kernels share: exact predicates, placements, surfaces, meshes |
+//! | [`geom`] | what all kernels share: exact predicates, placements, curves, surfaces, meshes |
 //! | [`syntax`] | text to tree |
 //! | [`shape`] | the graph of construction steps |
 //! | [`eval`] | names, values, dimensions, calls; binds `stdlib/` to the graph |
@@ -75,6 +75,8 @@
 //! |---|---|
 //! | S. Nagashima, *A spatial inclusion test for polyhedra using a spherical projection*, 1986 | [`geom::spherical_projection`], and the seeds of [`kernel::brep::boolean`] |
 //! | S. Tatehara, N. Tanaka, S. Tatsumi, K. Tokumasu, *Object-oriented expression for complex 3-D shapes* | [`kernel::field`], [`convert::offset`] |
+//! | S. Nakajima, isometric input and surfaces from two rails (METHODS, section 4) | [`geom::curve`], [`kernel::brep::sweep`] |
+//! | W. Wang, B. Jüttler, D. Zheng, Y. Liu, *Computation of rotation minimizing frames*; S. A. Coons, *Surfaces for computer-aided design of space forms* | [`kernel::brep::sweep`] |
 //! | T. Ju, F. Losasso, S. Schaefer, J. Warren, *Dual contouring of hermite data*; S. Schaefer, T. Ju, J. Warren, *Manifold dual contouring*; T. Ju, T. Udeshi, *Intersection-free contouring on an octree grid* | [`kernel::field::contour`] |
 //! | G. Wyvill, C. McPheeters, B. Wyvill, *Data structure for soft objects*; J. F. Blinn, *A generalization of algebraic surface drawing* | [`geom::charge`] |
 //! | R. E. Moore, *Interval analysis* | [`geom::formula`] |

@@ -8,6 +8,7 @@ pub mod curved_grid;
 pub mod development;
 pub mod flatten;
 pub mod formula;
+pub mod joined_grid;
 pub mod light;
 pub mod mesh;
 pub mod nearest;

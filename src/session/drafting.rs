@@ -74,9 +74,10 @@ impl<'a> Drafter<'a> {
     fn make(&self, view: &ViewSpec) -> Result<Drawn, Diagnostic> {
         self.realizer.realize(self.graph, &view.shapes);
         let tracer = Tracer { realizer: self.realizer, graph: self.graph };
-        let mut free = vec![];
+        let (mut free, mut tags) = (vec![], vec![]);
         for curve in &view.curves {
             free.extend(tracer.curve(curve)?);
+            tags.resize(free.len(), curve.tag().cloned());
         }
         for &profile in &view.profiles {
             free.extend(tracer.profile(profile)?);
@@ -116,7 +117,8 @@ impl<'a> Drafter<'a> {
             }
             let dimensions = view.dims.iter().map(|dim| dimension(dim, view, &camera));
             let dimensions = dimensions.collect::<Result<_, _>>()?;
-            let parts = view.shapes.iter().map(|&shape| name_of(self.graph, shape)).collect();
+            let shapes = view.shapes.iter().map(|&shape| name_of(self.graph, shape));
+            let parts = shapes.chain(view.surfaces.iter().map(|_| None)).chain(tags).collect();
             let style = style(&view.style);
             let cuttings = view.cuttings.iter().map(|cutting| cutting_line(cutting, &camera));
             let cuttings = cuttings.collect::<Result<_, _>>()?;

@@ -41,6 +41,14 @@ pub enum CurveSpec {
 }
 
 impl CurveSpec {
+    /// The name that it was given.
+    pub fn tag(&self) -> Option<&Arc<str>> {
+        match self {
+            CurveSpec::Exact(curve) => curve.tag(),
+            CurveSpec::Hatch { .. } => None,
+        }
+    }
+
     /// The curve after a placement.
     pub fn placed(&self, placement: &Placement) -> CurveSpec {
         match self {

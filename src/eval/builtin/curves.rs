@@ -40,6 +40,7 @@ pub const TABLE: &[(&str, Native)] = &[
     ("curve.round", round),
     ("curve.offset", offset),
     ("curve.profile", profile),
+    ("curve.tag", tag),
 ];
 
 /// The value of a curve.
@@ -246,6 +247,11 @@ fn profile(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
         return args.fail(0, Code::WrongKind, words);
     }
     Ok(Value::Profile(filled(evaluator, args, 0, curve)?))
+}
+
+fn tag(_: &mut Evaluator, args: &Args) -> Outcome<Value> {
+    let (curve, name) = (curve(args, 0)?, args.text(1)?);
+    Ok(value(curve.clone().tagged(Some(name.into()))))
 }
 
 /// The profile that a closed curve in an argument bounds, in its plane.

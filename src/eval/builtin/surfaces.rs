@@ -22,6 +22,7 @@ pub const TABLE: &[(&str, Native)] = &[
     ("surface.graph", graph),
     ("surface.grid", grid),
     ("surface.heightmap", heightmap),
+    ("surface.join", join),
     ("surface.thicken", thicken),
     ("surface.solid", solid),
 ];
@@ -179,6 +180,18 @@ fn height(evaluator: &mut Evaluator, args: &Args, x: f64, y: f64) -> Outcome<f64
             );
             args.fail(0, Code::WrongKind, words)
         }
+    }
+}
+
+/// `a, b, smooth`.
+fn join(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
+    let (Value::Surface(a), Value::Surface(b)) = (args.value(0), args.value(1)) else {
+        return args.wrong(0, "a surface");
+    };
+    let smooth = matches!(args.value(2), Value::Bool(true));
+    match a.grid().joined(b.grid(), smooth) {
+        Ok(grid) => keep(evaluator, args, grid),
+        Err(error) => args.fail(1, Code::Degenerate, error.to_string()),
     }
 }
 

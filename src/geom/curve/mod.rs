@@ -13,6 +13,8 @@ mod piece;
 mod plane;
 mod through;
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use thiserror::Error;
 
@@ -40,6 +42,7 @@ pub struct Curve {
     lengths: Vec<f64>,
     closed: bool,
     vertices: Vec<DVec3>,
+    tag: Option<Arc<str>>,
 }
 
 /// Why there is no curve.
@@ -90,7 +93,7 @@ impl Curve {
         let lengths = pieces.iter().map(grown).collect();
         let last = pieces.last().filter(|_| !closed).map(|piece| piece.at(1.0));
         let vertices = pieces.iter().map(|piece| piece.at(0.0)).chain(last).collect();
-        Curve { pieces, lengths, closed, vertices }
+        Curve { pieces, lengths, closed, vertices, tag: None }
     }
 
     /// Straight from point to point. Points that follow one another must differ.
@@ -147,6 +150,16 @@ impl Curve {
     /// The same curve with vertices of its own.
     pub fn with_vertices(self, vertices: Vec<DVec3>) -> Curve {
         Curve { vertices, ..self }
+    }
+
+    /// The name that it was given.
+    pub fn tag(&self) -> Option<&Arc<str>> {
+        self.tag.as_ref()
+    }
+
+    /// The same curve with a name, or without one.
+    pub fn tagged(self, tag: Option<Arc<str>>) -> Curve {
+        Curve { tag, ..self }
     }
 
     /// Its length, mm.
@@ -222,13 +235,14 @@ impl Curve {
     pub fn placed(&self, placement: &Placement) -> Curve {
         let pieces = self.pieces.iter().map(|piece| piece.placed(placement)).collect();
         let vertices = self.vertices.iter().map(|p| placement.point(*p)).collect();
-        Curve::of(pieces, self.closed).with_vertices(vertices)
+        Curve::of(pieces, self.closed).with_vertices(vertices).tagged(self.tag.clone())
     }
 
     /// The same curve the other way.
     pub fn reversed(&self) -> Curve {
         let pieces = self.pieces.iter().rev().map(Piece::reversed).collect();
-        Curve::of(pieces, self.closed).with_vertices(self.vertices.iter().rev().copied().collect())
+        let vertices = self.vertices.iter().rev().copied().collect();
+        Curve::of(pieces, self.closed).with_vertices(vertices).tagged(self.tag.clone())
     }
 
     /// What is before and after a place; open both. None where one of them would be a point.
