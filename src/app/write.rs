@@ -30,17 +30,21 @@ pub fn write_whole(folder: &Path, name: &str, bytes: &[u8]) -> Result<PathBuf, S
     Ok(path)
 }
 
+/// So many bytes are written between two questions whether to stop.
+const PIECE: usize = 1 << 20;
+
 fn replace(parent: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut unfinished = interrupt::unfinished();
-    let mut file = builder().tempfile_in(parent)?;
-    *unfinished = Some(file.path().to_path_buf());
-    drop(unfinished);
-    let written = file.write_all(bytes);
-    let mut unfinished = interrupt::unfinished();
-    *unfinished = None;
-    written?;
-    file.persist(path).map_err(|e| e.error)?;
-    Ok(())
+    interrupt::writing(|is_told_to_stop| {
+        let mut file = builder().tempfile_in(parent)?;
+        for piece in bytes.chunks(PIECE) {
+            file.write_all(piece)?;
+            if is_told_to_stop() {
+                return Err(io::ErrorKind::Interrupted.into());
+            }
+        }
+        file.persist(path).map_err(|e| e.error)?;
+        Ok(())
+    })
 }
 
 /// Temporary files are private unless told otherwise; outputs are ordinary files.

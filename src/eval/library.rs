@@ -56,13 +56,19 @@ pub struct Declaration {
     pub name: &'static str,
     /// The file it stands in, such as `std/solids`.
     pub file: &'static str,
-    /// The `///` lines without the slashes, joined by line ends.
-    pub doc: String,
     /// The declaration itself.
     pub text: &'static str,
+    /// The lines before it, from its first `///`.
+    comment: &'static str,
 }
 
 impl Declaration {
+    /// The `///` lines without the slashes, each with its end.
+    pub fn doc(&self) -> String {
+        let lines = self.comment.split_inclusive('\n').filter_map(|line| line.strip_prefix("///"));
+        lines.map(|words| words.strip_prefix(' ').unwrap_or(words)).collect()
+    }
+
     /// The signature as written: `fn box(x: Length, y: Length, z: Length) -> Solid`, or the name of
     /// a constant.
     pub fn signature(&self) -> &'static str {
@@ -81,8 +87,9 @@ impl Declaration {
     }
 
     /// The examples of the documentation: the text between lines of three back quotes.
-    pub fn examples(&self) -> Vec<&str> {
-        self.doc.split("```").skip(1).step_by(2).map(str::trim).collect()
+    pub fn examples(&self) -> Vec<String> {
+        let parts = self.doc();
+        parts.split("```").skip(1).step_by(2).map(|example| example.trim().to_string()).collect()
     }
 }
 
@@ -101,22 +108,22 @@ impl Index {
     }
 
     fn read() -> Index {
+        let mut all = Vec::with_capacity(MANY);
+        PRELUDE.iter().for_each(|(file, text)| find_declarations(file, text, &mut all));
         let mut index = Index { numbers: FxHashMap::default(), entries: vec![] };
-        for (file, text) in PRELUDE {
-            for declaration in declarations_of(file, text) {
-                index.add(declaration);
-            }
-        }
+        index.numbers.reserve(all.len());
+        index.entries.reserve(all.len());
+        all.into_iter().for_each(|declaration| index.add(declaration));
         index
     }
 
     fn add(&mut self, declaration: Declaration) {
         let next = self.entries.len() as u32;
         let number = *self.numbers.entry(declaration.name).or_insert(next);
-        if number == next {
-            self.entries.push((declaration.name, vec![]));
+        match self.entries.get_mut(number as usize) {
+            Some((_, declarations)) => declarations.push(declaration),
+            None => self.entries.push((declaration.name, vec![declaration])),
         }
-        self.entries[number as usize].1.push(declaration);
     }
 
     /// The number of a name.
@@ -147,33 +154,39 @@ impl Index {
     }
 }
 
-/// The declarations of a library file. Each begins in the first column with `fn name(` or a name,
+/// Room for the declarations of the library.
+const MANY: usize = 256;
+
+/// Adds the declarations of a library file. Each begins in the first column with `fn name(` or a name,
 /// after its `///` lines; lines that go on with it are indented or begin with a closing bracket.
-fn declarations_of(file: &'static str, text: &'static str) -> Vec<Declaration> {
-    let mut found: Vec<Declaration> = vec![];
-    let mut doc = String::new();
-    let mut at = 0;
-    let mut open: Option<(usize, String)> = None;
-    let starts = |line: &str| line.starts_with(char::is_alphabetic) || line.starts_with('/');
+fn find_declarations(file: &'static str, text: &'static str, found: &mut Vec<Declaration>) {
+    let (mut at, mut comment) = (0, None);
+    let mut open: Option<[usize; 2]> = None;
     for line in text.split_inclusive('\n') {
-        if starts(line) {
-            found.extend(
-                open.take().and_then(|(start, doc)| declaration(file, &text[start..at], doc)),
-            );
-            if let Some(words) = line.strip_prefix("///") {
-                doc.push_str(words.strip_prefix(' ').unwrap_or(words));
-            } else if !line.starts_with('/') {
-                open = Some((at, std::mem::take(&mut doc)));
+        let is_comment = line.as_bytes()[0] == b'/';
+        if is_comment || line.starts_with(char::is_alphabetic) {
+            found.extend(open.take().and_then(|start| declaration(file, text, start, at)));
+            if !is_comment {
+                open = Some([comment.take().unwrap_or(at), at]);
+            } else if line.as_bytes().starts_with(b"///") {
+                comment = comment.or(Some(at));
             }
         }
         at += line.len();
     }
-    found.extend(open.and_then(|(start, doc)| declaration(file, &text[start..], doc)));
-    found
+    found.extend(open.and_then(|start| declaration(file, text, start, at)));
 }
 
-fn declaration(file: &'static str, text: &'static str, doc: String) -> Option<Declaration> {
+/// The declaration in a file that begins at two places, with and without what is before it, and goes on to an
+/// end.
+fn declaration(
+    file: &'static str,
+    text: &'static str,
+    [comment, start]: [usize; 2],
+    end: usize,
+) -> Option<Declaration> {
+    let (comment, text) = (&text[comment..start], &text[start..end]);
     let rest = text.strip_prefix("fn ").unwrap_or(text);
     let end = rest.find(|c: char| !(c.is_alphanumeric() || c == '_'))?;
-    Some(Declaration { name: &rest[..end], file, doc, text: text.trim_end() })
+    Some(Declaration { name: &rest[..end], file, text: text.trim_end(), comment })
 }

@@ -31,8 +31,12 @@ const SPLITTER: f64 = 134_217_729.0;
 pub fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     let left = (a.x - c.x) * (b.y - c.y);
     let right = (a.y - c.y) * (b.x - c.x);
-    let det = left - right;
-    if det.abs() > BOUND_2D * (left.abs() + right.abs()) { det } else { exact_2d(a, b, c) }
+    let (det, permanent) = (left - right, left.abs() + right.abs());
+    if det.abs() > BOUND_2D * permanent {
+        return det;
+    }
+    // Without terms there is nothing to round: c is one of the others, mostly.
+    if permanent == 0.0 { 0.0 } else { exact_2d(a, b, c) }
 }
 
 /// Positive when d lies on the side of the plane a, b, c from which they turn clockwise (below, in

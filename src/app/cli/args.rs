@@ -2,7 +2,10 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{
+    ArgMatches, Args, Error, FromArgMatches, Parser, Subcommand,
+    error::{ErrorKind, Result},
+};
 
 use crate::{
     app::render::Style,
@@ -25,23 +28,79 @@ pub struct Cli {
     pub diagnostics: Style,
 }
 
-/// The subcommands.
-#[derive(Debug, Subcommand)]
+/// The subcommands. What each takes is put together only when it is asked for.
+#[derive(Debug)]
 pub enum Command {
-    /// Make the meshes of a model and write them
+    /// `katachi build`.
     Build(Build),
-    /// Find mistakes without making any geometry
+    /// `katachi check`.
     Check(Check),
-    /// Run the tests of a model
+    /// `katachi test`.
     Test(Test),
-    /// Print volume, area, bounds and more of each part
+    /// `katachi measure`.
     Measure(Measure),
-    /// List the parameters of a model
+    /// `katachi params`.
     Params(Params),
-    /// Draw all parts of a model or mesh as one view
+    /// `katachi view`.
     View(View),
-    /// Start a project in a new folder
+    /// `katachi new`.
     New(New),
+}
+
+/// A subcommand, what it is for, and its arguments.
+fn subcommand<A: Args>(name: &'static str, about: &'static str) -> clap::Command {
+    clap::Command::new(name).about(about).defer(arguments_of::<A>)
+}
+
+/// What arguments say about themselves gives way to what is said about the subcommand.
+fn arguments_of<A: Args>(command: clap::Command) -> clap::Command {
+    let about = command.get_about().cloned();
+    A::augment_args(command).about(about.unwrap_or_default()).long_about(None)
+}
+
+impl Subcommand for Command {
+    fn augment_subcommands(command: clap::Command) -> clap::Command {
+        command.subcommands([
+            subcommand::<Build>("build", "Make the meshes of a model and write them"),
+            subcommand::<Check>("check", "Find mistakes without making any geometry"),
+            subcommand::<Test>("test", "Run the tests of a model"),
+            subcommand::<Measure>("measure", "Print volume, area, bounds and more of each part"),
+            subcommand::<Params>("params", "List the parameters of a model"),
+            subcommand::<View>("view", "Draw all parts of a model or mesh as one view"),
+            subcommand::<New>("new", "Start a project in a new folder"),
+        ])
+    }
+
+    fn augment_subcommands_for_update(command: clap::Command) -> clap::Command {
+        Command::augment_subcommands(command)
+    }
+
+    fn has_subcommand(name: &str) -> bool {
+        ["build", "check", "test", "measure", "params", "view", "new"].contains(&name)
+    }
+}
+
+impl FromArgMatches for Command {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Command> {
+        let Some((name, own)) = matches.subcommand() else {
+            return Err(Error::new(ErrorKind::MissingSubcommand));
+        };
+        Ok(match name {
+            "build" => Command::Build(Build::from_arg_matches(own)?),
+            "check" => Command::Check(Check::from_arg_matches(own)?),
+            "test" => Command::Test(Test::from_arg_matches(own)?),
+            "measure" => Command::Measure(Measure::from_arg_matches(own)?),
+            "params" => Command::Params(Params::from_arg_matches(own)?),
+            "view" => Command::View(View::from_arg_matches(own)?),
+            "new" => Command::New(New::from_arg_matches(own)?),
+            _ => return Err(Error::new(ErrorKind::InvalidSubcommand)),
+        })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<()> {
+        *self = Command::from_arg_matches(matches)?;
+        Ok(())
+    }
 }
 
 /// Which model, with which parameters.

@@ -9,11 +9,11 @@ fn every_declaration_has_a_doc_and_a_running_example() {
     let mut faults = vec![];
     for declaration in Index::get().declarations() {
         let examples = declaration.examples();
-        if examples.is_empty() || declaration.doc.trim().is_empty() {
+        if examples.is_empty() || declaration.doc().trim().is_empty() {
             faults.push(format!("{} has no example", declaration.signature()));
         }
         for example in examples {
-            let words = run_files(&[("main.kata", example)], &[]).words();
+            let words = run_files(&[("main.kata", &example)], &[]).words();
             if !words.is_empty() {
                 faults.push(format!("{}\n{example}\n{words}", declaration.signature()));
             }
