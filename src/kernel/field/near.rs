@@ -9,10 +9,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::{
-    Nearest, Polyhedral, half_diagonal,
-    oriented::{Eight, LANES},
-};
+use super::{Nearest, Polyhedral, half_diagonal, lanes::LANES, prism::Framed};
 use crate::geom::Bounds;
 
 /// Slack for rounding, relative to coordinates.
@@ -37,7 +34,7 @@ pub(super) struct Candidate {
 
 impl Candidate {
     fn new(whole: &Polyhedral, triangle: u32, middle: DVec3) -> Candidate {
-        let foot = whole.triangles[triangle as usize].nearest(middle).0;
+        let foot = whole.triangle(triangle).nearest(middle).0;
         let away = foot.distance(middle);
         Candidate { away, towards: (middle - foot) / away.max(f64::MIN_POSITIVE), triangle }
     }
@@ -53,8 +50,8 @@ impl Candidate {
 pub(super) struct Near {
     middle: DVec3,
     pub list: Arc<[Candidate]>,
-    /// The boxes of the candidates, if these are many.
-    boxes: Arc<[Eight]>,
+    /// Prisms around the candidates, if these are many.
+    prisms: Option<Arc<Framed>>,
 }
 
 impl Near {
@@ -82,8 +79,12 @@ impl Near {
         list.sort_unstable_by(|a, b| a.away.total_cmp(&b.away).then(a.triangle.cmp(&b.triangle)));
         let most = widened(upper(whole, &list, cell), middle);
         list.retain(|c| c.lower(half) <= most);
-        let boxes = if list.len() > FEW { boxes(whole, &list) } else { vec![] };
-        Near { middle, list: list.into(), boxes: boxes.into() }
+        let prisms = || {
+            let triangles = list.iter().map(|c| whole.places(c.triangle));
+            Arc::new(Framed::new(middle, whole.triangle(list[0].triangle).normal(), triangles))
+        };
+        let prisms = (list.len() > FEW).then(prisms);
+        Near { middle, list: list.into(), prisms }
     }
 
     /// The largest distance of a point of the cell, or more.
@@ -97,12 +98,12 @@ impl Near {
         let moved = p.distance(self.middle);
         let (mut found, mut square) = (self.list[0].triangle, f64::INFINITY);
         let mut visit = |triangle: u32, square: &mut f64| {
-            let apart = whole.triangles[triangle as usize].nearest(p).0.distance_squared(p);
+            let apart = whole.triangle(triangle).nearest(p).0.distance_squared(p);
             if apart < *square {
                 (found, *square) = (triangle, apart);
             }
         };
-        if self.boxes.is_empty() {
+        let Some(prisms) = &self.prisms else {
             for candidate in self.list.iter() {
                 if candidate.away - moved > square.sqrt() {
                     break;
@@ -110,21 +111,20 @@ impl Near {
                 visit(candidate.triangle, &mut square);
             }
             return whole.on_triangle(found, p);
-        }
-        visit(self.list[0].triangle, &mut square);
-        let question = whole.tree.question(p);
-        let mut cut = question.cut(square);
-        for (boxes, list) in self.boxes.iter().zip(self.list.chunks(LANES)) {
+        };
+        let question = prisms.question(p);
+        let mut cut = f32::INFINITY;
+        for (prisms, list) in prisms.eights.iter().zip(self.list.chunks(LANES)) {
             if list[0].away - moved > square.sqrt() {
                 break;
             }
-            let away = question.away(boxes);
-            for (candidate, away) in list.iter().zip(away) {
-                if away > cut {
-                    continue;
-                }
-                visit(candidate.triangle, &mut square);
+            let squares = prisms.away(question.at);
+            let (mut left, mut lane) = (squares.below(cut), squares.least());
+            while left >> lane & 1 == 1 {
+                visit(list[lane as usize].triangle, &mut square);
                 cut = question.cut(square);
+                left &= squares.below(cut) & !(1 << lane);
+                lane = left.trailing_zeros() % LANES as u32;
             }
         }
         whole.on_triangle(found, p)
@@ -134,7 +134,7 @@ impl Near {
 /// The largest distance from the nearest triangle within a cell, or more.
 fn upper(whole: &Polyhedral, list: &[Candidate], cell: &Bounds) -> f64 {
     let largest = |c: &Candidate| {
-        let triangle = &whole.triangles[c.triangle as usize];
+        let triangle = whole.triangle(c.triangle);
         let corner = |k: usize| {
             let p = DVec3::from([0, 1, 2].map(|i| [cell.min, cell.max][k >> i & 1][i]));
             triangle.nearest(p).0.distance_squared(p)
@@ -142,17 +142,6 @@ fn upper(whole: &Polyhedral, list: &[Candidate], cell: &Bounds) -> f64 {
         (0..8).map(corner).fold(0.0, f64::max)
     };
     list.iter().take(TRIED).map(largest).fold(f64::INFINITY, f64::min).sqrt()
-}
-
-/// The boxes of candidates, in their order.
-fn boxes(whole: &Polyhedral, list: &[Candidate]) -> Vec<Eight> {
-    let eight = |chunk: &[Candidate]| {
-        let mut boxes = Eight::EMPTY;
-        let items = chunk.iter().map(|c| whole.tree.item(c.triangle));
-        items.enumerate().for_each(|(lane, item)| boxes.set(lane, &item));
-        boxes
-    };
-    list.chunks(LANES).map(eight).collect()
 }
 
 fn widened(reach: f64, middle: DVec3) -> f64 {

@@ -1,76 +1,134 @@
-//! Boxes turned along what they hold, eight at a time.
+//! Eight boxes in a frame that is turned along what they hold, on a lattice of bytes.
 //!
 //! Gottschalk, S., Lin, M. C., Manocha, D.: *OBBTree: a hierarchical structure for rapid interference detection*,
 //! 1996. A patch of a surface is thin across its normal; a box along the axes is as thick as the patch is
 //! slanted, and a ball that touches the surface at one point meets hundreds of such boxes.
 //!
+//! Ylitie, H., Karras, T., Laine, S.: *Efficient incoherent ray traversal on GPUs through compressed wide BVHs*,
+//! 2017. What is asked at random waits for memory: a node is two lines of a cache.
+//!
 //! # Departures
-//! Numbers are single and stand side by side, so that one loop measures eight boxes; what rounding may do is
-//! told by [`SLACK`].
+//! Boxes of a node share its frame, which is turned as a whole, and one loop measures eight of them; what rounding
+//! may do is told by the slack of a question.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, Mat3A, Vec3, Vec3A};
 
-/// Boxes in a group.
-pub(super) const LANES: usize = 8;
+use super::lanes::{Bytes, LANES, Lanes};
 
-/// How much nearer than measured a box may be, relative to the sum of the sizes of all coordinates: each of some
-/// twenty roundings of single numbers is 2^-24 of them at most.
-pub(super) const SLACK: f64 = 24.0 / (1 << 24) as f64;
+/// Steps of the lattice along an axis.
+const STEPS: f64 = 255.0;
+/// The least extent that is told apart, relative to the size of coordinates.
+const LEAST: f64 = 1.0 / (1 << 20) as f64;
 
-/// A box: its middle, its axes, and half of its sides along these.
+/// Eight boxes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Oriented {
-    center: [f32; 3],
-    axes: [[f32; 3]; 3],
-    half: [f32; 3],
+#[repr(align(128))]
+pub(super) struct Boxes {
+    /// Where the axes of the mesh lead in the frame, in steps of the lattice a millimetre.
+    columns: [Vec3A; 3],
+    /// Where the lattice begins along each axis, in steps.
+    start: [f32; 3],
+    /// The step of the lattice along each axis, mm.
+    step: [f32; 3],
+    /// The lower and the upper sides in steps.
+    low: [Bytes; 3],
+    high: [Bytes; 3],
+    /// Which boxes there are, one bit each; the others are the last one again.
+    pub present: u32,
 }
 
-impl Oriented {
-    /// The box of a triangle: its plane, its longest side.
-    pub fn of_triangle(corners: [DVec3; 3]) -> Oriented {
-        let [a, b, c] = corners;
-        let longest =
-            [b - a, c - b, a - c].into_iter().max_by(|s, t| length(*s).total_cmp(&length(*t)));
-        let along = longest.map_or(DVec3::X, |side| side.try_normalize().unwrap_or(DVec3::X));
-        Oriented::around(frame((b - a).cross(c - a), along), || corners.into_iter())
-    }
+/// A frame as it is kept, and boxes in it.
+struct Fitted {
+    axes: [Vec3; 3],
+    boxes: Vec<[DVec3; 2]>,
+}
 
-    /// A box of points on a surface whose area vector is about `facing`: the smaller of the box along the axes and of
-    /// one along that vector.
-    pub fn of_points<I: Iterator<Item = DVec3>>(points: impl Fn() -> I, facing: DVec3) -> Oriented {
-        let straight = Oriented::around(DMat3::IDENTITY, &points);
-        if facing == DVec3::ZERO {
-            return straight;
-        }
-        let turned = Oriented::around(frame(facing, spread(&points, facing)), &points);
-        if turned.surface() < straight.surface() { turned } else { straight }
-    }
-
-    /// The box of points along the columns of a matrix.
-    fn around<I: Iterator<Item = DVec3>>(axes: DMat3, points: impl Fn() -> I) -> Oriented {
-        let single = |v: DVec3| v.as_vec3().to_array();
-        let axes = [axes.x_axis, axes.y_axis, axes.z_axis].map(single);
+impl Fitted {
+    fn new<'a>(axes: DMat3, parts: impl Iterator<Item = &'a [[DVec3; 3]]>) -> Fitted {
+        let axes = [axes.x_axis, axes.y_axis, axes.z_axis].map(|axis| axis.as_vec3());
         // Along the axes as they are kept, not as they were meant.
-        let kept = axes.map(|a| DVec3::from(a.map(f64::from)));
-        let along = |p: DVec3| DVec3::from(kept.map(|axis| axis.dot(p)));
-        let fold = |(low, high): (DVec3, DVec3), p| (low.min(along(p)), high.max(along(p)));
-        let (low, high) = points().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), fold);
-        let middle = (low + high) / 2.0;
-        let center = single(kept[0] * middle.x + kept[1] * middle.y + kept[2] * middle.z);
-        let at = along(DVec3::from(center.map(f64::from)));
-        let half = (high - at).max(at - low).max(DVec3::ZERO);
-        Oriented { center, axes, half: half.to_array().map(|h| (h as f32).next_up()) }
+        let kept = axes.map(|axis| axis.as_dvec3());
+        let along = |p: &DVec3| DVec3::from(kept.map(|axis| axis.dot(*p)));
+        let around = |part: &[[DVec3; 3]]| {
+            let fold = |[low, high]: [DVec3; 2], p: DVec3| [low.min(p), high.max(p)];
+            part.iter().flatten().map(along).fold([DVec3::INFINITY, DVec3::NEG_INFINITY], fold)
+        };
+        Fitted { axes, boxes: parts.map(around).collect() }
     }
 
-    /// A measure of the area of the box.
-    fn surface(&self) -> f32 {
-        let [a, b, c] = self.half;
-        a * b + b * c + c * a
+    /// A measure of the area of the boxes.
+    fn surface(&self) -> f64 {
+        let of = |[low, high]: &[DVec3; 2]| {
+            let size = *high - *low;
+            size.x * size.y + size.y * size.z + size.z * size.x
+        };
+        self.boxes.iter().map(of).sum()
     }
 }
 
-fn length(side: DVec3) -> f64 {
-    side.length_squared()
+impl Boxes {
+    /// Boxes around triangles, so many in each; their corners are not larger than `reach`.
+    pub fn new(triangles: &[[DVec3; 3]], each: usize, reach: f64) -> Boxes {
+        let parts = || triangles.chunks(each).take(LANES);
+        let straight = Fitted::new(DMat3::IDENTITY, parts());
+        let turned = Fitted::new(fitting(|| triangles.iter().copied()), parts());
+        let smaller = if turned.surface() < straight.surface() { turned } else { straight };
+        Boxes::on_lattice(&smaller, reach)
+    }
+
+    fn on_lattice(fitted: &Fitted, reach: f64) -> Boxes {
+        let low = fitted.boxes.iter().map(|b| b[0]).fold(DVec3::INFINITY, DVec3::min);
+        let high = fitted.boxes.iter().map(|b| b[1]).fold(DVec3::NEG_INFINITY, DVec3::max);
+        let start = low.as_vec3();
+        // A part more than the extent, so that rounding does not lead beyond the last step.
+        let extent =
+            (high - low) * (1.0 + LEAST) + 2.0 * LEAST * reach.max(f64::from(f32::MIN_POSITIVE));
+        let step = (extent / STEPS).as_vec3();
+        let columns =
+            Mat3A::from_cols_array_2d(&fitted.axes.map(|axis| axis.to_array())).transpose();
+        let per = Vec3A::from(step.recip());
+        let mut made = Boxes {
+            columns: [columns.x_axis, columns.y_axis, columns.z_axis].map(|c| c * per),
+            start: (start / step).to_array(),
+            step: step.to_array(),
+            low: Default::default(),
+            high: Default::default(),
+            present: (1 << fitted.boxes.len()) - 1,
+        };
+        for lane in 0..LANES {
+            let sides = fitted.boxes[lane.min(fitted.boxes.len() - 1)];
+            let [low, high] = sides.map(|p| (p - start.as_dvec3()) / step.as_dvec3());
+            for k in 0..3 {
+                made.low[k].set(lane, low[k].floor() as u8);
+                made.high[k].set(lane, high[k].ceil() as u8);
+            }
+        }
+        made
+    }
+
+    /// The squares of the distances of a point from the boxes.
+    #[inline(always)]
+    pub fn away(&self, at: Vec3) -> Lanes {
+        let [x, y, z] = self.columns;
+        let at = x * at.x + y * at.y + z * at.z - Vec3A::from(self.start);
+        let beyond = |k: usize| {
+            let at = Lanes::all(at[k]);
+            let (low, high) = (Lanes::of(&self.low[k]), Lanes::of(&self.high[k]));
+            let beyond = (low - at).max(at - high).max(Lanes::ZERO) * Lanes::all(self.step[k]);
+            beyond * beyond
+        };
+        beyond(0) + beyond(1) + beyond(2)
+    }
+}
+
+/// The frame of triangles: across them and along where they are spread most; that of the mesh if they face all ways.
+pub(super) fn fitting<I: Iterator<Item = [DVec3; 3]>>(triangles: impl Fn() -> I) -> DMat3 {
+    let areas = || triangles().map(|[a, b, c]| (b - a).cross(c - a));
+    let (facing, area) = (areas().sum::<DVec3>(), areas().map(DVec3::length).sum::<f64>());
+    if facing.length() <= area / 2.0 {
+        return DMat3::IDENTITY;
+    }
+    frame(facing, spread(|| triangles().flatten(), facing))
 }
 
 /// Axes with the third one along `facing` and the first one about along `along`.
@@ -98,59 +156,4 @@ fn spread<I: Iterator<Item = DVec3>>(points: impl Fn() -> I, facing: DVec3) -> D
     let root = (half * half + xy * xy).sqrt();
     let found = if half > 0.0 { x * (half + root) + y * xy } else { x * xy + y * (root - half) };
     found.try_normalize().unwrap_or(x)
-}
-
-/// Eight boxes, each number of all of them side by side.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Eight {
-    center: [[f32; LANES]; 3],
-    axes: [[[f32; LANES]; 3]; 3],
-    half: [[f32; LANES]; 3],
-}
-
-impl Eight {
-    pub const EMPTY: Eight =
-        Eight { center: [[0.0; LANES]; 3], axes: [[[0.0; LANES]; 3]; 3], half: [[0.0; LANES]; 3] };
-
-    /// Puts a box into a lane.
-    pub fn set(&mut self, lane: usize, b: &Oriented) {
-        for i in 0..3 {
-            self.center[i][lane] = b.center[i];
-            self.half[i][lane] = b.half[i];
-            (0..3).for_each(|k| self.axes[i][k][lane] = b.axes[i][k]);
-        }
-    }
-
-    /// The box in a lane.
-    pub fn get(&self, lane: usize) -> Oriented {
-        Oriented {
-            center: self.center.map(|c| c[lane]),
-            axes: self.axes.map(|axis| axis.map(|c| c[lane])),
-            half: self.half.map(|c| c[lane]),
-        }
-    }
-
-    /// The squares of the distances of a point from the boxes.
-    #[inline]
-    pub fn away(&self, at: [f32; 3]) -> [f32; LANES] {
-        // Loops over lanes alone, which compilers turn into vectors.
-        let mut from = [[0.0; LANES]; 3];
-        for k in 0..3 {
-            for (from, center) in from[k].iter_mut().zip(&self.center[k]) {
-                *from = at[k] - center;
-            }
-        }
-        let [x, y, z] = &from;
-        let mut squares = [0.0; LANES];
-        for k in 0..3 {
-            let ([u, v, w], half) = (&self.axes[k], &self.half[k]);
-            for i in 0..LANES {
-                let along = x[i] * u[i] + y[i] * v[i] + z[i] * w[i];
-                let beyond = along.abs() - half[i];
-                let beyond = if beyond > 0.0 { beyond } else { 0.0 };
-                squares[i] += beyond * beyond;
-            }
-        }
-        squares
-    }
 }

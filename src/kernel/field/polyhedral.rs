@@ -40,28 +40,32 @@ pub struct Nearest {
     pub normal: DVec3,
 }
 
+/// No triangle.
+const NONE: u32 = u32::MAX;
+
 /// What a triangle knows of the mesh.
 #[derive(Clone, Copy, Debug)]
 struct Facet {
-    face: u32,
     corners: [u32; 3],
-    /// Normals of the triangle, and of its three edges; corners have theirs in a list.
-    normal: DVec3,
-    edges: [DVec3; 3],
-    /// Whether each edge lies between two faces of the mesh.
-    ridges: [bool; 3],
+    face: u32,
 }
 
 /// The distance field of a solid bounded by a closed mesh, which must have a face.
+///
+/// What every question reads is kept small: points asked at random wait for memory more than for numbers.
 #[derive(Clone, Debug)]
 pub struct Polyhedral {
     pub(super) tree: Tree,
     /// In the order of the tree.
-    pub(super) triangles: Vec<Triangle>,
     facets: Vec<Facet>,
-    /// Angle-weighted normals of the points.
-    corners: Vec<DVec3>,
+    /// The triangles across the edges of each.
+    across: Vec<[u32; 3]>,
+    /// In the order in which triangles come upon them.
     points: Vec<DVec3>,
+    /// Their numbers in the mesh.
+    names: Vec<u32>,
+    /// Their angle-weighted normals.
+    corners: Vec<DVec3>,
     extent: Bounds,
 }
 
@@ -82,23 +86,47 @@ impl Polyhedral {
         let cut = triangulate(mesh);
         let at = |corners: &[u32; 3]| corners.map(|c| mesh.points[c as usize]);
         let places: Vec<[DVec3; 3]> = cut.corners.iter().map(at).collect();
+        let extent = Bounds::of(places.iter().flatten().copied());
         let (tree, order) = Tree::new(&places);
-        let of = |i: &u32| (cut.corners[*i as usize], cut.face[*i as usize]);
-        let ordered: Vec<([u32; 3], u32)> = order.iter().map(of).collect();
-        let triangles: Vec<Triangle> = ordered.iter().map(|(t, _)| Triangle::new(at(t))).collect();
-        let facets = facets(&ordered, &triangles);
-        let corners = corner_normals(&mesh.points, &facets);
-        let extent = Bounds::of(places.into_iter().flatten());
-        Some(Polyhedral { tree, triangles, facets, corners, points: mesh.points.clone(), extent })
+        let (mut numbers, mut names) = (vec![NONE; mesh.points.len()], vec![]);
+        let mut renamed = |name: u32| {
+            let number = &mut numbers[name as usize];
+            if *number == NONE {
+                *number = names.len() as u32;
+                names.push(name);
+            }
+            *number
+        };
+        let mut facet = |&i: &u32| {
+            let corners = cut.corners[i as usize].map(&mut renamed);
+            Facet { corners, face: cut.face[i as usize] }
+        };
+        let facets: Vec<Facet> = order.iter().map(&mut facet).collect();
+        let across = across(&facets);
+        let points: Vec<DVec3> = names.iter().map(|&i| mesh.points[i as usize]).collect();
+        let corners = corner_normals(&points, &facets);
+        Some(Polyhedral { tree, facets, across, points, names, corners, extent })
+    }
+
+    /// A triangle, by its place in the tree.
+    #[inline]
+    pub(super) fn triangle(&self, i: u32) -> Triangle {
+        Triangle::new(self.places(i))
+    }
+
+    /// The corners of a triangle.
+    #[inline]
+    pub(super) fn places(&self, i: u32) -> [DVec3; 3] {
+        self.facets[i as usize].corners.map(|c| self.points[c as usize])
     }
 
     /// The nearest point of the boundary and what it lies on.
     pub fn nearest(&self, p: DVec3) -> Nearest {
         let (mut found, mut limit) = (0, f64::INFINITY);
-        self.tree.nearest(p, f64::INFINITY, |i, best| {
-            let square = self.triangles[i as usize].nearest(p).0.distance_squared(p);
-            if square < best {
-                (limit, found) = (square, i);
+        self.tree.nearest(p, f64::INFINITY, |leaf, _| {
+            for i in leaf {
+                let square = self.triangle(i).nearest(p).0.distance_squared(p);
+                (limit, found) = if square < limit { (square, i) } else { (limit, found) };
             }
             limit
         });
@@ -124,19 +152,15 @@ impl Polyhedral {
 
     /// The nearest point, known to lie on a triangle.
     pub(super) fn on_triangle(&self, i: u32, p: DVec3) -> Nearest {
-        let (point, part) = self.triangles[i as usize].nearest(p);
-        let facet = &self.facets[i as usize];
+        let (facet, triangle) = (&self.facets[i as usize], self.triangle(i));
+        let (point, part) = triangle.nearest(p);
         let (feature, normal) = match part {
-            Part::Inside => (Feature::Face(facet.face), facet.normal),
+            Part::Inside => (Feature::Face(facet.face), triangle.normal()),
             Part::Corner(k) => {
-                let corner = facet.corners[k];
-                (Feature::Vertex(corner), self.corners[corner as usize])
+                let corner = facet.corners[k] as usize;
+                (Feature::Vertex(self.names[corner]), self.corners[corner])
             }
-            Part::Edge(k) if !facet.ridges[k] => (Feature::Face(facet.face), facet.edges[k]),
-            Part::Edge(k) => {
-                let (a, b) = (facet.corners[k], facet.corners[(k + 1) % 3]);
-                (Feature::Edge(a.min(b), a.max(b)), facet.edges[k])
-            }
+            Part::Edge(k) => self.on_edge(i, k),
         };
         let apart = p.distance(point);
         let outside = match normal == DVec3::ZERO {
@@ -150,6 +174,23 @@ impl Polyhedral {
             face: facet.face,
             normal,
         }
+    }
+
+    /// What a point on an edge of a triangle lies on, and the normal there.
+    fn on_edge(&self, i: u32, k: usize) -> (Feature, DVec3) {
+        let (facet, across) = (&self.facets[i as usize], self.across[i as usize][k]);
+        let other = self.facets.get(across as usize);
+        let normals = [
+            self.triangle(i).normal(),
+            other.map_or(DVec3::ZERO, |other| triangle(&self.points, other).normal()),
+        ];
+        let normal =
+            if normals.contains(&DVec3::ZERO) { DVec3::ZERO } else { normals[0] + normals[1] };
+        if other.is_some_and(|other| other.face == facet.face) {
+            return (Feature::Face(facet.face), normal);
+        }
+        let [a, b] = [k, (k + 1) % 3].map(|k| self.names[facet.corners[k] as usize]);
+        (Feature::Edge(a.min(b), a.max(b)), normal)
     }
 
     /// A point of every piece of the boundary, in the order of the triangles.
@@ -171,11 +212,9 @@ impl Polyhedral {
     /// The triangles, by their places, at most so far from a point; `None` if they are more than `most`.
     pub(super) fn within(&self, p: DVec3, reach: f64, most: usize) -> Option<Vec<u32>> {
         let (mut near, square) = (vec![], reach * reach);
-        self.tree.nearest(p, square.next_up(), |i, best| {
-            let found = self.triangles[i as usize].nearest(p).0.distance_squared(p);
-            if found <= square {
-                near.push(i);
-            }
+        self.tree.nearest(p, square.next_up(), |leaf, best| {
+            let away = |i: u32| self.triangle(i).nearest(p).0.distance_squared(p);
+            near.extend(leaf.filter(|&i| away(i) <= square));
             // Nothing is nearer than this: the search ends.
             if near.len() > most { f64::NEG_INFINITY } else { best }
         });
@@ -183,26 +222,20 @@ impl Polyhedral {
     }
 }
 
-/// Every triangle with its neighbours' normals.
-fn facets(ordered: &[([u32; 3], u32)], triangles: &[Triangle]) -> Vec<Facet> {
-    let normals: Vec<DVec3> = triangles.iter().map(Triangle::normal).collect();
+fn triangle(points: &[DVec3], facet: &Facet) -> Triangle {
+    Triangle::new(facet.corners.map(|c| points[c as usize]))
+}
+
+/// The triangles across the edges of each.
+fn across(facets: &[Facet]) -> Vec<[u32; 3]> {
     let mut sides: FxHashMap<(u32, u32), u32> = FxHashMap::default();
-    for (i, (t, _)) in ordered.iter().enumerate() {
-        sides.extend((0..3).map(|k| ((t[k], t[(k + 1) % 3]), i as u32)));
+    for (i, Facet { corners, .. }) in facets.iter().enumerate() {
+        sides.extend((0..3).map(|k| ((corners[k], corners[(k + 1) % 3]), i as u32)));
     }
-    let facet = |(i, &(corners, face)): (usize, &([u32; 3], u32))| {
-        let across = |k: usize| sides.get(&(corners[(k + 1) % 3], corners[k])).map(|&j| j as usize);
-        let between = |k: usize| match across(k) {
-            Some(j) if normals[j] != DVec3::ZERO && normals[i] != DVec3::ZERO => {
-                normals[i] + normals[j]
-            }
-            _ => DVec3::ZERO,
-        };
-        let ridge = |k: usize| across(k).is_none_or(|j| ordered[j].1 != face);
-        let (edges, ridges) = ([0, 1, 2].map(between), [0, 1, 2].map(ridge));
-        Facet { face, corners, normal: normals[i], edges, ridges }
-    };
-    ordered.iter().enumerate().map(facet).collect()
+    let other = |a: u32, b: u32| sides.get(&(b, a)).copied().unwrap_or(NONE);
+    let of =
+        |Facet { corners: [a, b, c], .. }: &Facet| [other(*a, *b), other(*b, *c), other(*c, *a)];
+    facets.iter().map(of).collect()
 }
 
 /// The angle-weighted normal of every point; zero where a triangle without area meets it.
@@ -210,12 +243,13 @@ fn corner_normals(points: &[DVec3], facets: &[Facet]) -> Vec<DVec3> {
     let mut normals = vec![DVec3::ZERO; points.len()];
     let mut doubtful = vec![false; points.len()];
     for facet in facets {
+        let normal = triangle(points, facet).normal();
         let at = facet.corners.map(|c| points[c as usize]);
         for k in 0..3 {
             let (u, v) = (at[(k + 1) % 3] - at[k], at[(k + 2) % 3] - at[k]);
             let angle = libm::atan2(u.cross(v).length(), u.dot(v));
-            normals[facet.corners[k] as usize] += facet.normal * angle;
-            doubtful[facet.corners[k] as usize] |= facet.normal == DVec3::ZERO;
+            normals[facet.corners[k] as usize] += normal * angle;
+            doubtful[facet.corners[k] as usize] |= normal == DVec3::ZERO;
         }
     }
     let trusted = |(normal, doubtful): (DVec3, bool)| if doubtful { DVec3::ZERO } else { normal };

@@ -1,59 +1,60 @@
-//! A hierarchy for nearest-point questions over triangles: eight boxes in a node, down to single triangles.
+//! A hierarchy for nearest-point questions over triangles: eight boxes in a node, down to leaves of a few.
+//!
+//! It is full: nodes of a level stand one after the other, and child k of node i is number 8 i + k of the level
+//! below, so that nothing has to say where children are.
+
+use std::ops::Range;
 
 use glam::DVec3;
 
-use super::oriented::{Eight, LANES, Oriented, SLACK};
+use super::{
+    lanes::{LANES, Lanes},
+    oriented::{Boxes, fitting},
+    question::Question,
+};
 use crate::geom::Bounds;
 
-/// More than can be open at a time: seven of each of eleven levels, and eight more.
-const OPEN: usize = 96;
-/// Marks a child that is an item.
-const ITEM: u32 = 1 << 31;
+/// Levels of nodes over all triangles that numbers of 32 bits can tell apart.
+const LEVELS: usize = 10;
 
-/// A node: the boxes of its children, and what they are.
-#[derive(Clone, Debug)]
-struct Node {
-    boxes: Eight,
-    children: [u32; LANES],
-    count: u32,
-}
+/// Triangles in a leaf: what they are takes a line of a cache, and boxes around each would take more.
+const LEAF: usize = 4;
 
 /// The hierarchy.
 #[derive(Clone, Debug)]
 pub(super) struct Tree {
-    /// The root first.
-    nodes: Vec<Node>,
-    /// The node and the lane of each item.
-    places: Vec<u32>,
+    /// Those over leaves first, the root last.
+    nodes: Vec<Boxes>,
+    /// Where nodes of each level begin.
+    levels: Vec<u32>,
+    /// The number of items.
+    count: u32,
     /// Boxes are measured from here.
     origin: DVec3,
     /// The size of their coordinates.
     reach: f64,
 }
 
-/// A question: a point in the frame of the boxes, and what is too far.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Question {
-    at: [f32; 3],
-    slack: f64,
+/// Children of a node that are still to be looked at.
+#[derive(Clone, Copy)]
+struct Open {
+    /// The number of the first one.
+    first: u32,
+    /// Those left, one bit each.
+    left: u32,
+    squares: Lanes,
 }
 
-impl Question {
-    /// The square of the distance beyond which a box holds nothing nearer than the square root of `best`.
-    #[inline]
-    pub fn cut(&self, best: f64) -> f32 {
-        if best < 0.0 {
-            return -1.0; // nothing is so near
-        }
-        let far = best.sqrt() + self.slack;
-        // A trifle more than what rounding to a single number and squaring may take away.
-        (far * far) as f32 * (1.0 + 4.0 * f32::EPSILON)
-    }
+impl Open {
+    const NONE: Open = Open { first: 0, left: 0, squares: Lanes::ZERO };
 
-    /// The squares of the distances of eight boxes.
+    /// Takes the next child that is not too far.
     #[inline]
-    pub fn away(&self, boxes: &Eight) -> [f32; LANES] {
-        boxes.away(self.at)
+    fn next(&mut self, cut: f32) -> Option<u32> {
+        self.left &= self.squares.below(cut);
+        let lane = self.left.trailing_zeros();
+        self.left &= self.left.wrapping_sub(1);
+        (lane < LANES as u32).then_some(self.first + lane)
     }
 }
 
@@ -62,112 +63,94 @@ impl Tree {
     pub fn new(triangles: &[[DVec3; 3]]) -> (Tree, Vec<u32>) {
         let around = Bounds::of(triangles.iter().flatten().copied());
         let origin = around.center();
-        let shifted: Vec<[DVec3; 3]> = triangles.iter().map(|t| t.map(|p| p - origin)).collect();
-        let reach = (around.max - origin).length();
         let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
-        let mut tree = Tree { nodes: vec![], places: vec![0; triangles.len()], origin, reach };
-        tree.fill(&shifted, &mut order, 0);
+        let mut size = LEAF;
+        while size * LANES < order.len() {
+            size *= LANES;
+        }
+        arrange(triangles, &mut order, size);
+        let shifted: Vec<[DVec3; 3]> =
+            order.iter().map(|&i| triangles[i as usize].map(|p| p - origin)).collect();
+        let (count, reach) = (order.len() as u32, (around.max - origin).length());
+        let mut tree = Tree { nodes: vec![], levels: vec![], count, origin, reach };
+        let mut each = LEAF;
+        while tree.levels.is_empty() || each < shifted.len() {
+            tree.levels.push(tree.nodes.len() as u32);
+            let node = |t: &[[DVec3; 3]]| Boxes::new(t, each, reach);
+            tree.nodes.extend(shifted.chunks(each * LANES).map(node));
+            each *= LANES;
+        }
         (tree, order)
     }
 
-    /// Makes the node over some items, which come to stand in its order from `start` on.
-    fn fill(&mut self, triangles: &[[DVec3; 3]], items: &mut [u32], start: u32) -> u32 {
-        let number = self.nodes.len() as u32;
-        self.nodes.push(Node { boxes: Eight::EMPTY, children: [0; LANES], count: 0 });
-        // Children are full but for the last, so that nodes are few.
-        let mut size = 1;
-        while size * LANES < items.len() {
-            size *= LANES;
-        }
-        part(triangles, items, size);
-        for (lane, part) in items.chunks_mut(size).enumerate() {
-            let first = start + (lane * size) as u32;
-            let around = if size == 1 {
-                self.places[first as usize] = number * LANES as u32 + lane as u32;
-                Oriented::of_triangle(triangles[part[0] as usize])
-            } else {
-                around(triangles, part)
-            };
-            let child = if size == 1 { first | ITEM } else { self.fill(triangles, part, first) };
-            let node = &mut self.nodes[number as usize];
-            node.boxes.set(lane, &around);
-            node.children[lane] = child;
-            node.count = lane as u32 + 1;
-        }
-        number
-    }
-
-    /// The box of an item.
-    pub fn item(&self, item: u32) -> Oriented {
-        let place = self.places[item as usize] as usize;
-        self.nodes[place / LANES].boxes.get(place % LANES)
-    }
-
-    /// A point as boxes see it.
+    /// Goes through the leaves from near to far: `visit` takes the items of one and the square of the least distance
+    /// so far, and gives the square of the least distance.
     #[inline]
-    pub fn question(&self, p: DVec3) -> Question {
-        let from = p - self.origin;
-        let slack = SLACK * (from.abs().element_sum() + self.reach);
-        Question { at: from.as_vec3().to_array(), slack }
-    }
-
-    /// Goes through the items from near to far: `visit` takes one and the square of the least distance so far,
-    /// and gives the square of the least distance.
-    #[inline]
-    pub fn nearest(&self, p: DVec3, limit: f64, mut visit: impl FnMut(u32, f64) -> f64) {
-        let question = self.question(p);
-        let mut open = [(0.0f32, 0u32); OPEN];
-        let (mut count, mut best, mut cut) = (1, limit, question.cut(limit));
-        while count > 0 {
-            count -= 1;
-            let (away, child) = open[count];
-            if away > cut {
-                continue;
+    pub fn nearest(&self, p: DVec3, limit: f64, mut visit: impl FnMut(Range<u32>, f64) -> f64) {
+        let question = Question::new(p - self.origin, self.reach);
+        if !question.is_near() {
+            visit(0..self.count, limit);
+            return;
+        }
+        let mut open = [Open::NONE; LEVELS];
+        let (mut best, mut cut) = (limit, question.cut(limit));
+        let (mut level, mut place) = (self.levels.len(), 0);
+        loop {
+            // Down to the nearest leaf below a node, if there is a near one.
+            while level > 0 {
+                let node = &self.nodes[(self.levels[level - 1] + place) as usize];
+                let squares = node.away(question.at);
+                let (near, least) = (squares.below(cut) & node.present, squares.least());
+                if near >> least & 1 == 0 {
+                    break;
+                }
+                level -= 1;
+                let first = place * LANES as u32;
+                open[level] = Open { first, left: near & !(1 << least), squares };
+                place = first + least;
             }
-            if child & ITEM != 0 {
-                let found = visit(child & !ITEM, best);
+            if level == 0 {
+                let first = place * LEAF as u32;
+                let found = visit(first..(first + LEAF as u32).min(self.count), best);
                 if found < best {
                     (best, cut) = (found, question.cut(found));
                 }
-                continue;
             }
-            let node = &self.nodes[child as usize];
-            let squares = question.away(&node.boxes);
-            let (mut least, mut place) = (f32::INFINITY, count);
-            for (&square, &child) in squares.iter().zip(&node.children).take(node.count as usize) {
-                open[count] = (square, child);
-                (least, place) = if square < least { (square, count) } else { (least, place) };
-                // What is no number is not known to be far.
-                let far = square > cut;
-                count += usize::from(!far);
-            }
-            // The nearest is next; after it the least distance is so small that order hardly matters.
-            if place + 1 < count {
-                open.swap(place, count - 1);
+            // Up to the next child that is left.
+            place = loop {
+                let Some(open) = open[..self.levels.len()].get_mut(level) else { return };
+                match open.next(cut) {
+                    Some(child) => break child,
+                    None => level += 1,
+                }
             }
         }
     }
 }
 
-/// A box around some triangles.
-fn around(triangles: &[[DVec3; 3]], items: &[u32]) -> Oriented {
-    let chosen = || items.iter().map(|&i| triangles[i as usize]);
-    let facing = chosen().map(|[a, b, c]| (b - a).cross(c - a)).sum();
-    Oriented::of_points(|| chosen().flatten(), facing)
+/// Orders items so that those that lie together stand in chunks of a size, and in each of these again, down to
+/// leaves. Cuts are along the frame in which there will be boxes, which so hardly overlap.
+fn arrange(triangles: &[[DVec3; 3]], items: &mut [u32], size: usize) {
+    let axes = fitting(|| items.iter().map(|&i| triangles[i as usize])).transpose();
+    let middle = |i: u32| axes * triangles[i as usize].iter().sum::<DVec3>();
+    part(&mut items.iter().map(|&i| (middle(i), i)).collect::<Vec<_>>(), size, items);
+    if size > LEAF {
+        items.chunks_mut(size).for_each(|chunk| arrange(triangles, chunk, size / LANES));
+    }
 }
 
-/// Orders items so that those that lie together stand in chunks of a size.
-fn part(triangles: &[[DVec3; 3]], items: &mut [u32], size: usize) {
+/// Orders items by their middles so that those that lie together stand in chunks of a size.
+fn part(middles: &mut [(DVec3, u32)], size: usize, items: &mut [u32]) {
     if items.len() <= size {
+        items.iter_mut().zip(middles).for_each(|(item, middle)| *item = middle.1);
         return;
     }
-    let middle = |i: u32| triangles[i as usize].iter().sum::<DVec3>();
-    let middles = Bounds::of(items.iter().map(|&i| middle(i)));
-    let axis = (middles.max - middles.min).max_position();
-    let key = |i: u32| middle(i)[axis];
+    let around = Bounds::of(middles.iter().map(|m| m.0));
+    let axis = (around.max - around.min).max_position();
     let half = (items.len().div_ceil(size) / 2 * size).max(size);
-    items.select_nth_unstable_by(half, |&i, &j| key(i).total_cmp(&key(j)).then(i.cmp(&j)));
-    let (left, right) = items.split_at_mut(half);
-    part(triangles, left, size);
-    part(triangles, right, size);
+    middles
+        .select_nth_unstable_by(half, |(p, i), (q, j)| p[axis].total_cmp(&q[axis]).then(i.cmp(j)));
+    let ((left, right), (first, last)) = (middles.split_at_mut(half), items.split_at_mut(half));
+    part(left, size, first);
+    part(right, size, last);
 }

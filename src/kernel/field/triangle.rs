@@ -27,16 +27,11 @@ pub(super) struct Triangle {
     a: DVec3,
     ab: DVec3,
     ac: DVec3,
-    /// The products ab ab, ab ac, ac ac.
-    bb: f64,
-    bc: f64,
-    cc: f64,
 }
 
 impl Triangle {
     pub fn new([a, b, c]: [DVec3; 3]) -> Triangle {
-        let (ab, ac) = (b - a, c - a);
-        Triangle { a, ab, ac, bb: ab.dot(ab), bc: ab.dot(ac), cc: ac.dot(ac) }
+        Triangle { a, ab: b - a, ac: c - a }
     }
 
     /// The unit normal; zero for a triangle without area.
@@ -55,21 +50,22 @@ impl Triangle {
         if d1 <= 0.0 && d2 <= 0.0 {
             return (self.a, Part::Corner(0));
         }
-        let (d3, d4) = (d1 - self.bb, d2 - self.bc);
+        let (bb, bc, cc) = (self.ab.dot(self.ab), self.ab.dot(self.ac), self.ac.dot(self.ac));
+        let (d3, d4) = (d1 - bb, d2 - bc);
         if d3 >= 0.0 && d4 <= d3 {
             return (self.a + self.ab, Part::Corner(1));
         }
         let vc = d1 * d4 - d3 * d2;
         if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-            return (self.a + self.ab * (d1 / self.bb), Part::Edge(0));
+            return (self.a + self.ab * (d1 / bb), Part::Edge(0));
         }
-        let (d5, d6) = (d1 - self.bc, d2 - self.cc);
+        let (d5, d6) = (d1 - bc, d2 - cc);
         if d6 >= 0.0 && d5 <= d6 {
             return (self.a + self.ac, Part::Corner(2));
         }
         let vb = d5 * d2 - d1 * d6;
         if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-            return (self.a + self.ac * (d2 / self.cc), Part::Edge(2));
+            return (self.a + self.ac * (d2 / cc), Part::Edge(2));
         }
         let va = d3 * d6 - d5 * d4;
         let (u, v) = (d4 - d3, d5 - d6);
