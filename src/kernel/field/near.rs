@@ -18,8 +18,8 @@ pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 const MANY: usize = 2048;
 /// So many of the nearest triangles are tried for the upper bound of a cell.
 const TRIED: usize = 6;
-/// Candidates that are measured one by one, without a look at their boxes: so many cells of an octree have no
-/// more that boxes would need most of its memory.
+/// Candidates that are measured one by one, without a look at their prisms: so many cells of an octree have no
+/// more that prisms would need most of its memory.
 const FEW: usize = 24;
 
 /// A triangle as a cell sees it.
@@ -103,7 +103,8 @@ impl Near {
                 (found, *square) = (triangle, apart);
             }
         };
-        let Some(prisms) = &self.prisms else {
+        let framed = self.prisms.as_ref().map(|prisms| (prisms, prisms.question(p)));
+        let Some((prisms, question)) = framed.filter(|(_, question)| question.is_near()) else {
             for candidate in self.list.iter() {
                 if candidate.away - moved > square.sqrt() {
                     break;
@@ -112,7 +113,6 @@ impl Near {
             }
             return whole.on_triangle(found, p);
         };
-        let question = prisms.question(p);
         let mut cut = f32::INFINITY;
         for (prisms, list) in prisms.eights.iter().zip(self.list.chunks(LANES)) {
             if list[0].away - moved > square.sqrt() {
