@@ -36,12 +36,6 @@ const OVERDRAWN: f64 = 0.005;
 /// The same for visible and hidden lines together: different lines may come that near to each other by chance.
 const OVERDRAWN_IN_ALL: f64 = 0.01;
 
-/// A view that is drawn wrong: where a sponge of a formula has rims, facets are so narrow that some of their sides are
-/// drawn.
-const WRONG: [(&str, &str); 1] = [("gyroid.kata", "front")];
-/// An example whose lines overlap at those rims.
-const OVERLAPPING: [&str; 1] = ["gyroid.kata"];
-
 /// Where the examples are looked at from.
 #[derive(Clone, Copy, Debug)]
 enum View {
@@ -343,8 +337,7 @@ fn faults(root: &Path, model: &str, part: &Path, view: View) -> Vec<String> {
     for (what, lines, most) in [("visible", &lines, OVERDRAWN), ("all", &both, OVERDRAWN_IN_ALL)] {
         let (twice, at, all) = overdraw(lines);
         let ratio = all / (all - twice).max(1e-9);
-        let known = OVERLAPPING.iter().any(|known| model.ends_with(known));
-        if ratio > 1.0 + most && !known {
+        if ratio > 1.0 + most {
             faults.push(format!(
                 "{model}: {name} {view:?}: {what} lines overlap {ratio:.4}, at {at}"
             ));
@@ -354,8 +347,7 @@ fn faults(root: &Path, model: &str, part: &Path, view: View) -> Vec<String> {
         ("drawn and not seen", drawn_unseen(&sights, &lines)),
         ("seen and not drawn", seen_undrawn(&sights, &lines)),
     ] {
-        let known = WRONG.iter().any(|w| model.ends_with(w.0) && w.1 == view_name(view));
-        if share > SHARE && !known {
+        if share > SHARE {
             let share = share * 100.0;
             faults.push(format!("{model}: {name} {view:?}: {share:.2} % is {what}, at {at}"));
         }
