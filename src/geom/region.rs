@@ -56,6 +56,21 @@ impl Contour {
         Contour { points, curves }
     }
 
+    /// The centre and radius of the circle that all its edges are chords of, if there is one.
+    ///
+    /// ```
+    /// use glam::{DVec2, dvec2};
+    /// use katachi::geom::{Contour, EdgeCurve};
+    /// let circle = EdgeCurve::Circle { center: DVec2::ZERO, radius: 2.0 };
+    /// let points = vec![dvec2(2., 0.), dvec2(0., 2.), dvec2(-2., 0.), dvec2(0., -2.)];
+    /// assert_eq!(Contour { points, curves: vec![circle; 4] }.circle(), Some((DVec2::ZERO, 2.0)));
+    /// ```
+    pub fn circle(&self) -> Option<(DVec2, f64)> {
+        let first = self.edges().next()?.curve;
+        let EdgeCurve::Circle { center, radius } = first else { return None };
+        self.edges().all(|e| e.curve == first).then_some((center, radius))
+    }
+
     /// Signed area in mm^2, positive when the corners run counter-clockwise.
     ///
     /// ```

@@ -2,6 +2,7 @@
 
 mod cases;
 mod edge_on;
+mod facets;
 mod figures;
 mod grids;
 mod language;

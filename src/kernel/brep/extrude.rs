@@ -56,6 +56,9 @@ pub enum ExtrudeError {
 /// scaled linearly from 1 to `scale`; a scale of 0 in both gives an apex, in one a ridge
 /// (without twist only).
 ///
+/// Circles that turn about a point outside their centre keep their corners' directions and so slide along their edges: the
+/// facets of such a thread run upwards, not around it.
+///
 /// Slices and the split of twisted facets keep within `tolerance` of the surface that the region's edges
 /// sweep. Fails for an empty region and for sizes as [`ExtrudeError`] says.
 ///
@@ -136,7 +139,11 @@ impl Rise {
 
     /// Slices for which no facet is off by more than the tolerance.
     fn slices(&self, region: &Region, tolerance: Tolerance) -> Result<u32, ExtrudeError> {
-        let slices = sides::slices(region, self.twist, self.scale, tolerance);
+        let slices = if region.contours().all(|c| self.pivot(c) != DVec2::ZERO) {
+            self.slices_of_circles(region, tolerance)
+        } else {
+            sides::slices(region, self.twist, self.scale, tolerance)
+        };
         let corners = region.contours().map(|c| c.points.len()).sum::<usize>();
         let most = MAX_SLICES.min(MAX_FACETS / corners as u32).max(1);
         if slices > f64::from(most) {
@@ -145,14 +152,34 @@ impl Rise {
         Ok(slices as u32)
     }
 
-    /// The place of a corner at the share t of the height.
-    fn at(&self, p: DVec2, t: f64) -> DVec3 {
-        let scaled = p * (1.0 + (self.scale - 1.0) * t);
-        let turned = if self.twist == 0.0 {
-            scaled
-        } else {
+    /// Slices of circles that slide: their flanks are flat across, and the centre farthest out runs along a helix.
+    fn slices_of_circles(&self, region: &Region, tolerance: Tolerance) -> f64 {
+        let far = region.contours().map(|c| self.pivot(c).length()).fold(0.0, f64::max);
+        let angle = self.twist.abs().to_radians();
+        let helix = far * self.scale.x.max(1.0) * angle * angle / 8.0;
+        (helix / tolerance.mm()).sqrt().ceil().max(1.0)
+    }
+
+    /// The point of a contour that turns about the axis, while the rest is moved by it: the centre of a circle beside the
+    /// axis, 0 for all that turns.
+    fn pivot(&self, contour: &Contour) -> DVec2 {
+        let slides = self.twist != 0.0 && self.scale.x == self.scale.y;
+        contour.circle().filter(|_| slides).map_or(DVec2::ZERO, |circle| circle.0)
+    }
+
+    /// The place of a corner of a contour with a pivot at the share t of the height.
+    fn at(&self, p: DVec2, pivot: DVec2, t: f64) -> DVec3 {
+        let scale = 1.0 + (self.scale - 1.0) * t;
+        let turn = |p: DVec2| {
             let (s, c) = (sin_deg(self.twist * t), cos_deg(self.twist * t));
-            DMat2::from_cols_array(&[c, s, -s, c]) * scaled
+            DMat2::from_cols_array(&[c, s, -s, c]) * p
+        };
+        let turned = if self.twist == 0.0 {
+            p * scale
+        } else if pivot == DVec2::ZERO {
+            turn(p * scale)
+        } else {
+            turn(pivot * scale) + (p - pivot) * scale
         };
         turned.extend(self.height * t)
     }
@@ -177,7 +204,7 @@ impl Rise {
         if self.twist == 0.0 && factor == 1.0 {
             return Surface::Cylinder { point: center.extend(0.0), axis: DVec3::Z, radius };
         }
-        Surface::Facets
+        Surface::Smooth
     }
 }
 
@@ -209,11 +236,12 @@ impl Drawing {
 
     /// The corners of a contour at every slice; an apex is one point.
     fn rings(&mut self, contour: &Contour, slices: u32) -> Vec<Vec<u32>> {
+        let pivot = self.rise.pivot(contour);
         let ring = |i: u32| {
             let t = f64::from(i) / f64::from(slices);
             let apex = i == slices && self.rise.scale == DVec2::ZERO;
             let corners = if apex { &contour.points[..1] } else { &contour.points[..] };
-            corners.iter().map(|p| add_point(&mut self.mesh, self.rise.at(*p, t))).collect()
+            corners.iter().map(|p| add_point(&mut self.mesh, self.rise.at(*p, pivot, t))).collect()
         };
         (0..=slices).map(ring).collect()
     }

@@ -2,7 +2,13 @@
 
 use std::f64::consts::TAU;
 
-use super::{conic::Ellipse, merge::Mark};
+use glam::DVec2;
+
+use super::{
+    conic::Ellipse,
+    drawing::{Path, Segment},
+    merge::Mark,
+};
 
 /// An arc of an ellipse, counter-clockwise from one parameter to a larger one.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -42,6 +48,41 @@ pub fn merged(arcs: &[ArcPiece], tolerance: f64) -> Vec<ArcPiece> {
         merge_group(arcs, &group, &mut out);
     }
     out
+}
+
+/// Curves on the ellipse of one of the arcs, up to `near` mm, become arcs of it, so that they can be merged; the others
+/// are given back. A short curve does not tell its ellipse by itself.
+pub fn adopted(
+    curves: Vec<(Path, Mark)>,
+    arcs: &mut Vec<ArcPiece>,
+    near: f64,
+) -> Vec<(Path, Mark)> {
+    let ellipses: Vec<Ellipse> = arcs.iter().map(|arc| arc.ellipse).collect();
+    let mut others = vec![];
+    for (path, mark) in curves {
+        let found = ellipses.iter().find_map(|e| on_ellipse(&path, e, near).map(|part| (e, part)));
+        match found {
+            Some((&ellipse, [from, to])) => arcs.push(ArcPiece { ellipse, from, to, mark }),
+            None => others.push((path, mark)),
+        }
+    }
+    others
+}
+
+/// The parameters of a short curve's ends on an ellipse, the second one larger, if it lies on it.
+fn on_ellipse(path: &Path, ellipse: &Ellipse, near: f64) -> Option<[f64; 2]> {
+    let on = |p: DVec2| ellipse.at(ellipse.parameter(p)).distance(p) <= near;
+    let is_on = |(start, segment): (DVec2, &Segment)| {
+        [0.0, 0.25, 0.5, 0.75, 1.0].iter().all(|t| on(segment.at(start, *t)))
+    };
+    let within = path.start.distance(ellipse.center) <= ellipse.major.length() + near;
+    if !within || !path.pieces().all(is_on) || path.length() > ellipse.minor.length() {
+        return None;
+    }
+    let [s, e] = [path.start, path.end()].map(|p| ellipse.parameter(p));
+    let after = |from: f64, to: f64| (to - from).rem_euclid(TAU);
+    let forwards = after(s, e) <= after(e, s);
+    Some(if forwards { [s, s + after(s, e)] } else { [e, e + after(e, s)] })
 }
 
 fn alike(a: &Ellipse, b: &Ellipse, tolerance: f64) -> bool {
@@ -94,10 +135,28 @@ fn join_ends(arcs: &mut Vec<ArcPiece>) {
 
 #[cfg(test)]
 mod tests {
-    use glam::{DVec2, dvec2};
+    use glam::dvec2;
 
     use super::*;
     use crate::output::drawing::{Class, Kind};
+
+    #[test]
+    fn short_curves_on_an_ellipse_become_arcs_of_it() {
+        let ellipse =
+            Ellipse { center: dvec2(1.0, 2.0), major: DVec2::X * 3.0, minor: DVec2::Y * 3.0 };
+        let mark = Mark { class: Class::Hidden, order: 1, kind: Kind::Contour, id: 0 };
+        let mut arcs = vec![ArcPiece { ellipse, from: 0.0, to: 3.0, mark }];
+        let [p, q] = [0.5, 0.48].map(|t| ellipse.at(t));
+        let along = |t: f64| {
+            let (sin, cos) = libm::sincos(t);
+            dvec2(-sin, cos) * 0.02
+        };
+        let (first, second) = (p - along(0.5), q + along(0.48));
+        let curve = |first: DVec2| (Path::of(p, Segment::Cubic { first, second, to: q }), mark);
+        let others = adopted(vec![curve(first), curve(first * 1.1)], &mut arcs, 1e-6);
+        assert_eq!((others.len(), arcs.len()), (1, 2));
+        assert!((arcs[1].from - 0.48).abs() < 1e-9 && (arcs[1].to - 0.5).abs() < 1e-9);
+    }
 
     #[test]
     fn overlapping_arcs_are_drawn_once() {

@@ -59,6 +59,11 @@ impl Field {
         }
     }
 
+    /// Whether it is a plane.
+    pub fn is_flat(&self) -> bool {
+        matches!(self, Field::Flat(_))
+    }
+
     /// The field at a point.
     pub fn local(&self, p: DVec3) -> Local {
         match self {

@@ -18,11 +18,12 @@
 //!
 //! 1. What is behind the eye is cut off (`frustum`).
 //! 2. The scene is put on the picture's lattice, and faces and edges are told apart (`model`); faces of known round
-//!    surfaces get their true contours and edges (`smooth`, `field`).
+//!    surfaces get their true contours and edges (`smooth`, `field`), and contours of surfaces known by their facets
+//!    alone are traced over the normals of the facets' corners (`mesh_contour`).
 //! 3. Each edge is given its order of invisibility: by body against body for convex polyhedra (`convex`), by Nishita's
 //!    count over crossings with outlines (`count`), or by clipping against facets (`clip`). Debug builds hold the
 //!    count against the clipping.
-//! 4. Curves are fitted (`fit`), coincident lines merged (`merge`, `arcs`), and lines joined to paths (`join`).
+//! 4. Curves are fitted (`fit`), coincident lines merged (`merge`, `arcs`, `cover`), and lines joined to paths (`join`).
 //!
 //! Surfaces over a plane are drawn by their floating horizon ([`horizon_lines`]), curved grids by [`grid_lines`].
 //!
@@ -50,6 +51,7 @@ mod clip;
 mod conic;
 mod convex;
 mod count;
+mod cover;
 mod curved_grid;
 mod curves;
 #[allow(clippy::module_inception, reason = "the noun is the file's")]
@@ -65,6 +67,7 @@ mod lattice;
 mod links;
 mod meet;
 mod merge;
+mod mesh_contour;
 mod model;
 mod outline;
 mod patches;
@@ -103,9 +106,12 @@ use span::Span;
 const COINCIDENT: f64 = 1e-8;
 
 /// Cubic curves are so much farther from the true curve than lines that coincide from each other: they only have to
-/// look right and be as long, and each digit costs half as many pieces again. Straight lines of a body whose faces are
-/// not exact are drawn once if they are so near: its walls are off by that where they are seen edge-on.
+/// look right and be as long, and each digit costs half as many pieces again.
 const LOOSE: f64 = 100.0;
+
+/// Straight lines of a body whose faces are not exact, and curves traced over facets, are drawn once if they are nearer than this part of what chords may
+/// be off, or than curves that coincide: its walls are off by that where they are seen edge-on.
+const ROUGH: f64 = 0.1;
 
 /// A line that is not so many times as long as coincident lines are apart is a dot: an edge seen end-on, or what rounding
 /// leaves of a line beside the end of another.
@@ -119,7 +125,7 @@ const DOT: f64 = 200.0;
 pub fn visible_lines(scene: &Scene, camera: &Camera, options: &Options) -> Drawing {
     let model = Model::new(scene, camera, options);
     let layered = matches!(options.hidden, Hidden::Depth(_));
-    let mut sheet = Sheet { layered, rough: scene.rough(), ..Sheet::default() };
+    let mut sheet = Sheet { layered, rough: scene.rough(), bound: model.bound, ..Sheet::default() };
     hide(&model, options.method, &mut sheet);
     if let Some(window) = camera.window() {
         sheet.cut(&window);
@@ -135,13 +141,18 @@ struct Sheet {
     straight: Vec<Piece>,
     arcs: Vec<ArcPiece>,
     curves: Vec<(Path, Mark)>,
+    /// Curves that were traced over facets.
+    traced: Vec<(Path, Mark)>,
     /// Numbers of bodies whose faces are not exact, in order.
     rough: Vec<u32>,
+    /// How far chords may be off their curve, mm.
+    bound: f64,
 }
 
 /// Puts all edges on the sheet.
 fn hide(model: &Model, method: Method, sheet: &mut Sheet) {
     let bodies_only = model.hulls.last().is_some_and(|h| h.edges.end == model.edges.len());
+    let bodies_only = bodies_only && model.threads.is_empty();
     if method == Method::Auto && bodies_only && model.hulls.iter().all(|h| h.convex) {
         return hide_convex(model, sheet);
     }
@@ -250,7 +261,14 @@ fn hide_threads(model: &Model, clipper: &Clipper, sheet: &mut Sheet) {
         },
     );
     let drawn: Vec<Vec<(Shape, Mark)>> = drawn.collect();
-    drawn.into_iter().flatten().for_each(|(shape, mark)| sheet.add_shape(shape, mark));
+    for (thread, shapes) in model.threads.iter().zip(drawn) {
+        for (shape, mark) in shapes {
+            match shape {
+                Shape::Curve(path) if thread.is_traced() => sheet.traced.push((path, mark)),
+                shape => sheet.add_shape(shape, mark),
+            }
+        }
+    }
 }
 
 /// How a part of an edge behind so many faces is drawn.
@@ -323,30 +341,35 @@ impl Sheet {
             let part = |(from, to)| ArcPiece { from: at(from), to: at(to), ..arc };
             self.arcs.extend(parts.into_iter().map(part));
         }
-        for (path, mark) in std::mem::take(&mut self.curves) {
-            for (start, segment) in path.pieces() {
-                for (from, to) in window.of_curve(|t| segment.at(start, t)) {
-                    let (start, segment) = segment.part(start, from, to);
-                    self.curves.push((Path::of(start, segment), mark));
+        for curves in [&mut self.curves, &mut self.traced] {
+            for (path, mark) in std::mem::take(curves) {
+                for (start, segment) in path.pieces() {
+                    for (from, to) in window.of_curve(|t| segment.at(start, t)) {
+                        let (start, segment) = segment.part(start, from, to);
+                        curves.push((Path::of(start, segment), mark));
+                    }
                 }
             }
         }
     }
 
     /// Merges what coincides within `tolerance` mm, measures, and keeps what is wanted, joined to paths.
-    fn assemble(self, tolerance: f64, hidden: Hidden) -> Drawing {
+    fn assemble(mut self, tolerance: f64, hidden: Hidden) -> Drawing {
         let loose = tolerance * LOOSE;
-        let near = Nearness { tolerance, loose, rough: self.rough };
+        let rough = loose.max(self.bound * ROUGH);
+        let near = Nearness { tolerance, loose: rough, rough: self.rough };
         let straight = merge::merged(&self.straight, &near)
             .into_iter()
             .map(|p| (Path::of(p.from, Segment::Line { to: p.to }), p.mark));
+        let curves = arcs::adopted(self.curves, &mut self.arcs, loose);
         let arcs = arcs::merged(&self.arcs, tolerance).into_iter().map(|a| {
             let conic::Ellipse { center, major, minor } = a.ellipse;
             let arc = Segment::Arc { center, major, minor, from: a.from, to: a.to };
             (Path::of(a.ellipse.at(a.from), arc), a.mark)
         });
-        let all: Vec<(Path, Mark)> =
-            straight.chain(arcs).chain(curves::merged(self.curves, loose)).collect();
+        let mut all: Vec<(Path, Mark)> =
+            straight.chain(arcs).chain(curves::merged(curves, loose)).collect();
+        all.extend(cover::uncovered(self.traced, &all, rough));
         let length = |class: Class| {
             let of = all.iter().filter(|(_, mark)| mark.class == class);
             of.map(|(path, _)| path.length()).sum::<f64>()

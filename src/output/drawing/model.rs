@@ -13,6 +13,7 @@ use super::{
     frustum::{Visible, before_eye, is_near},
     lattice::{Lattice, Plane},
     links::{self, Link, NONE, links},
+    mesh_contour::{add_contours, is_bent, steady_normals},
     patches::faithful_origins,
     pieces::{Homes, Sides},
     round::Bow,
@@ -171,6 +172,8 @@ pub struct Model {
 struct Faces {
     /// Unit normals, outwards.
     normals: Vec<DVec3>,
+    /// The same without those of narrow facets; empty where all are flat or round.
+    steady: Vec<DVec3>,
     /// The sign of their picture's area: positive when they face the eye.
     area: Vec<f64>,
     /// The facet each became, or [`NONE`].
@@ -312,9 +315,20 @@ impl Model {
     fn add_body(&mut self, body: &Visible, base: u32, (links, round): (&[Link], &[bool])) -> bool {
         let (mesh, id) = (&*body.mesh, body.id);
         let open = links.iter().any(|l| l.right == NONE && !body.is_cut(l.a, l.b));
-        let faces = self.add_facets(mesh, base, open);
-        for link in links {
-            let kind = kind(mesh, link, &faces, round, body.crease);
+        let mut faces = self.add_facets(mesh, base, open);
+        if mesh.faces().any(is_bent) {
+            faces.steady = steady_normals(mesh, links, &faces.normals, self.bound / CHORD);
+        }
+        let faces = faces;
+        let inner = |link: &Link| !open && is_inner(mesh, link, &faces, round, body.crease);
+        let inner: Vec<bool> = links.iter().map(inner).collect();
+        if inner.contains(&true) {
+            let normal = |_: &Model, face: u32, _: u32| faces.normals[face as usize];
+            add_contours(self, mesh, (base, id), (links, &inner), &faces.steady, normal);
+        }
+        for (link, inner) in links.iter().zip(&inner) {
+            let turns = || kind(mesh, link, &faces, round, body.crease);
+            let kind = if *inner { None } else { turns() };
             if let Some(kind) = kind.filter(|_| !body.is_cut(link.a, link.b)) {
                 let (a, b) = (base + link.a, base + link.b);
                 let hides = |f: u32| f != NONE && faces.facet[f as usize] != NONE;
@@ -340,6 +354,7 @@ impl Model {
         let count = mesh.face_count();
         let mut faces = Faces {
             normals: Vec::with_capacity(count),
+            steady: vec![],
             area: Vec::with_capacity(count),
             facet: Vec::with_capacity(count),
         };
@@ -479,6 +494,15 @@ fn folded_grids<'a>(
     near.map(|&(grid, id)| (Folded::new(grid, camera, bound), id)).collect()
 }
 
+/// Whether an edge only parts facets of one surface that is known by its facets alone, or such a facet and what it goes on
+/// into: the contour is traced beside it.
+fn is_inner(mesh: &PolyMesh, link: &Link, faces: &Faces, round: &[bool], crease: f64) -> bool {
+    let bent = |f: u32| is_bent(mesh.face(f as usize));
+    link.right != NONE
+        && (bent(link.left) || bent(link.right))
+        && !is_sharp(mesh, link, faces, round, crease)
+}
+
 /// What an edge is drawn as; `None` when it only parts facets of one surface.
 fn kind(mesh: &PolyMesh, link: &Link, faces: &Faces, round: &[bool], crease: f64) -> Option<Kind> {
     if link.right == NONE {
@@ -488,15 +512,22 @@ fn kind(mesh: &PolyMesh, link: &Link, faces: &Faces, round: &[bool], crease: f64
     if (faces.area[left] > 0.0) != (faces.area[right] > 0.0) {
         return Some(Kind::Contour);
     }
+    is_sharp(mesh, link, faces, round, crease).then_some(Kind::Sharp)
+}
+
+/// Whether two faces meet at an angle that is drawn.
+fn is_sharp(mesh: &PolyMesh, link: &Link, faces: &Faces, round: &[bool], crease: f64) -> bool {
+    let [left, right] = [link.left as usize, link.right as usize];
     let [one, other] = [left, right].map(|f| mesh.face(f));
     if one.plane() == other.plane() {
-        return None;
+        return false;
     }
-    let cosine = faces.normals[left].dot(faces.normals[right]);
+    let steady = if faces.steady.is_empty() { &faces.normals } else { &faces.steady };
+    let cosine = steady[left].dot(steady[right]);
     let [s, t] = [one, other].map(|f| f.origin().surface);
     let [curved, bent] = [one, other].map(|f| round[f.origin_index() as usize]);
     let same = one.origin_index() == other.origin_index();
-    let sharp = match (s, t) {
+    match (s, t) {
         (Surface::Smooth, _) if same => cosine < FOLDED,
         (Surface::Smooth | Surface::Facets, _) | (_, Surface::Smooth | Surface::Facets) => {
             cosine < crease
@@ -504,6 +535,5 @@ fn kind(mesh: &PolyMesh, link: &Link, faces: &Faces, round: &[bool], crease: f64
         _ if curved && bent => s != t,
         _ if curved || bent => true,
         _ => cosine <= 0.0 || faces.normals[left].cross(faces.normals[right]).length() > FLAT,
-    };
-    sharp.then_some(Kind::Sharp)
+    }
 }

@@ -35,14 +35,17 @@ pub struct Thread {
 
 /// A point of a thread.
 #[derive(Clone, Copy, Debug)]
-struct Knot {
-    point: u32,
+pub struct Knot {
+    /// Its number in the model.
+    pub point: u32,
+    /// Where it is drawn if not where it is hidden.
+    pub drawn: Option<DVec3>,
     /// A vector whose image runs along the line.
-    tangent: DVec3,
+    pub tangent: DVec3,
     /// Whether curves are fitted up to here only: the same lines of two sides are cut alike.
-    stops: bool,
+    pub stops: bool,
     /// Whether the line ends here in a cusp.
-    cusp: bool,
+    pub cusp: bool,
 }
 
 /// What lies beside a chord.
@@ -109,7 +112,7 @@ impl Loom<'_, '_> {
             let place = if way == 0 { [along, far as f64] } else { [far as f64, along] };
             let spot = folded.surface.spot(cell, place);
             let tangent = if way == 0 { spot.along_s } else { spot.along_t };
-            Knot { point, tangent, stops: false, cusp: false }
+            Knot { point, drawn: None, tangent, stops: false, cusp: false }
         };
         for k in 0..=count {
             let point = self.folded.point(cell, turn(k, other));
@@ -260,7 +263,8 @@ impl Loom<'_, '_> {
             let [at, normal] =
                 [&self.folded.points, &self.folded.normals].map(|l| l[point as usize]);
             let tangent = normal.cross(self.folded.sight(at));
-            Knot { point, tangent, stops: false, cusp: self.folded.cusps.contains(&point) }
+            let cusp = self.folded.cusps.contains(&point);
+            Knot { point, drawn: None, tangent, stops: false, cusp }
         };
         let knots: Vec<Knot> = points.into_iter().map(knot).collect();
         self.add_runs(&knots);
@@ -268,6 +272,18 @@ impl Loom<'_, '_> {
 }
 
 impl Thread {
+    /// A line through points of the model, which all facets hide.
+    pub fn free(kind: Kind, id: u32, knots: Vec<Knot>) -> Thread {
+        let chord = Chord { homes: [NONE; 2], spared: [false; 2], sinks: [false; 2] };
+        let chords = vec![chord; knots.len().saturating_sub(1)];
+        Thread { kind, id, knots, chords }
+    }
+
+    /// Whether it was traced over facets.
+    pub fn is_traced(&self) -> bool {
+        self.knots.iter().any(|knot| knot.drawn.is_some())
+    }
+
     /// Calls with the shapes on paper of its parts, each with the faces before it; `layered` tells hidden parts apart.
     pub fn hide(
         &self,
@@ -298,7 +314,10 @@ impl Thread {
 
     /// The points on paper with the directions of the line.
     fn nodes(&self, model: &Model) -> Vec<Node> {
-        let at = |i: usize| model.lattice.millimetres(model.at[self.knots[i].point as usize]);
+        let at = |i: usize| match self.knots[i].drawn {
+            Some(p) => model.camera.image(p).0,
+            None => model.lattice.millimetres(model.at[self.knots[i].point as usize]),
+        };
         let last = self.knots.len() - 1;
         let node = |i: usize| {
             let knot = self.knots[i];

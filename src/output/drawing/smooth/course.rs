@@ -12,7 +12,7 @@ use crate::output::drawing::{field::on_all, links::NONE, patches::Patch};
 
 /// A surface is seen edge-on where the sine of the angle to the sight line is below this. Rounding leaves contours that
 /// run along rows of corners that far off; in the picture they are off by its square.
-const EDGE_ON: f64 = 1e-7;
+const EDGE_ON: f64 = 1e-5;
 
 /// A surface does not turn to the eye along a direction where the part of it that does is smaller than this.
 const EVEN: f64 = 1e-6;

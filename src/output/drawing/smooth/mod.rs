@@ -21,6 +21,7 @@ use super::{
     frustum::Visible,
     lattice::Plane,
     links::{Link, NONE, each_side},
+    mesh_contour::{add_contours, is_bent, steady_normals},
     model::{CHORD, Edge, FOLDED, Facet, Model, Outline},
     outline::FARTHEST,
     patches::{Patch, Patches},
@@ -58,6 +59,10 @@ struct Smooth<'a> {
     turns: Vec<(u32, f64)>,
     /// The place of each patch's surface in the model.
     fields: Vec<u32>,
+    /// Normals of faces, without those of narrow facets; empty where all are flat or round.
+    steady: Vec<DVec3>,
+    /// Whether the edge at hand is within a surface whose contour is traced by its facets.
+    within: bool,
     /// Sides of the front part of faces.
     parts: Vec<(u32, [u32; 2])>,
     passes: Vec<Pass>,
@@ -92,6 +97,8 @@ pub fn add_body(
         front: vec![],
         turns: vec![(NONE, 0.0); mesh.points.len()],
         fields: vec![],
+        steady: vec![],
+        within: false,
         parts: vec![],
         passes: vec![],
         tips: vec![],
@@ -101,7 +108,11 @@ pub fn add_body(
     smooth.settle_points();
     smooth.find_front();
     let first = smooth.model.outlines.len();
-    links.iter().for_each(|link| smooth.add_link(link));
+    let inner = smooth.trace_bent(links);
+    for (link, inner) in links.iter().zip(inner) {
+        smooth.within = inner;
+        smooth.add_link(link);
+    }
     smooth.pass_tips();
     smooth.close_fronts();
     smooth.add_facets(first);
@@ -151,10 +162,43 @@ impl Smooth<'_> {
         self.front = faces.map(front).collect();
     }
 
+    /// Adds the contours of surfaces that are known by their facets alone, and tells of each link whether it is within one.
+    fn trace_bent(&mut self, links: &[Link]) -> Vec<bool> {
+        if !self.mesh.faces().any(is_bent) {
+            return vec![false; links.len()];
+        }
+        let width = self.model.bound / CHORD;
+        self.steady = steady_normals(self.mesh, links, &self.patches.normals, width);
+        let bent = |f: u32| f != NONE && is_bent(self.mesh.face(f as usize));
+        let is_inner = |link: &Link| {
+            let whole = link.right != NONE && (bent(link.left) || bent(link.right));
+            whole && !self.is_sharp(link, self.patches_of(link), self.ends(link))
+        };
+        let inner: Vec<bool> = links.iter().map(is_inner).collect();
+        if inner.contains(&true) {
+            let (patches, base) = (&self.patches, self.base);
+            let beside = |model: &Model, face: u32, point: u32| {
+                let Patch { field, outward } =
+                    patches.list[patches.of_face[face as usize] as usize];
+                field.slope(model.space[(base + point) as usize]).1 * outward
+            };
+            let of = (base, self.id);
+            add_contours(self.model, self.mesh, of, (links, &inner), &self.steady, beside);
+        }
+        inner
+    }
+
+    fn ends(&self, link: &Link) -> [u32; 2] {
+        [self.base + link.a, self.base + link.b]
+    }
+
+    fn patches_of(&self, link: &Link) -> [u32; 2] {
+        let of = |f: u32| if f == NONE { NONE } else { self.patches.of_face[f as usize] };
+        [link.left, link.right].map(of)
+    }
+
     fn add_link(&mut self, link: &Link) {
-        let ends = [self.base + link.a, self.base + link.b];
-        let patches = [link.left, link.right]
-            .map(|f| if f == NONE { NONE } else { self.patches.of_face[f as usize] });
+        let (ends, patches) = (self.ends(link), self.patches_of(link));
         if patches[0] == patches[1] && self.patches.is_round(patches[0]) {
             self.add_seam(link, patches[0], ends);
         } else {
@@ -242,6 +286,9 @@ impl Smooth<'_> {
             let [one, other] = patches.map(|patch| self.patches.list[patch as usize]);
             let [m, n] = [one, other].map(|patch| patch.field.slope(p).1 * patch.outward);
             if let Some(crease) = crease {
+                let [m, n] = [(link.left, m, one), (link.right, n, other)].map(|(f, n, patch)| {
+                    if patch.field.is_flat() { self.steady[f as usize] } else { n }
+                });
                 return m.dot(n) < crease;
             }
             let sine = m.cross(n).length();
@@ -290,7 +337,7 @@ impl Smooth<'_> {
             if right && !left {
                 self.add_outline(link.right, [b, a], curve);
             }
-            if drawn || left != right && link.right != NONE {
+            if drawn || left != right && link.right != NONE && !self.within {
                 let back = !left && !right;
                 self.model.edges.push(Edge { a, b, kind, id: self.id, curve, back });
             }
