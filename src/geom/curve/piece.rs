@@ -78,7 +78,7 @@ impl Turn {
     fn reach(&self) -> f64 {
         // The largest singular value of [x y] is at most the root of the sum of squares.
         let (a, b) = (self.x.length(), self.y.length());
-        if self.is_circular() { a } else { a.hypot(b) }
+        if self.is_circular() { a } else { (a * a + b * b).sqrt() }
     }
 }
 

@@ -39,9 +39,30 @@ const MOST_BENT: f64 = 0.25;
 /// Facets around a contour stick out by so many times as much as their sides are bent, at most.
 const OUTSIDE: f64 = 2.0;
 
-/// Whether a face is a facet of a surface that is known by its facets alone.
-pub fn is_bent(face: FaceRef) -> bool {
-    matches!(face.origin().surface, Surface::Smooth | Surface::Facets)
+/// Whether faces are facets of a surface that is known by its facets alone, and keep to it as drawings ask. Where neighbours
+/// mostly turn so much that a surface through them would be farther off than `most` mm, they stand for themselves.
+pub fn bent_faces(mesh: &PolyMesh, links: &[Link], normals: &[DVec3], most: f64) -> Vec<bool> {
+    let is_known =
+        |face: FaceRef| matches!(face.origin().surface, Surface::Smooth | Surface::Facets);
+    let mut off: Vec<Vec<f64>> = vec![vec![]; mesh.origins().len()];
+    for link in links.iter().filter(|link| link.right != NONE) {
+        let faces = [link.left, link.right].map(|f| mesh.face(f as usize));
+        let origin = faces[0].origin_index();
+        if !is_known(faces[0]) || origin != faces[1].origin_index() {
+            continue;
+        }
+        let side = mesh.points[link.a as usize].distance(mesh.points[link.b as usize]);
+        let wide: f64 = faces.iter().map(|f| f.area_vector().length()).sum::<f64>() / side;
+        let turn = normals[link.left as usize].distance(normals[link.right as usize]);
+        // The height of an arc over a chord as wide as both facets are in the mean.
+        off[origin as usize].push(turn * wide / 16.0);
+    }
+    let is_coarse = |mut off: Vec<f64>| {
+        let middle = off.len() / 2;
+        !off.is_empty() && *off.select_nth_unstable_by(middle, f64::total_cmp).1 > most
+    };
+    let coarse: Vec<bool> = off.into_iter().map(is_coarse).collect();
+    mesh.faces().map(|face| is_known(face) && !coarse[face.origin_index() as usize]).collect()
 }
 
 /// The unit normals of faces, those of narrow bent faces as those of the face beyond their longest side: `width` mm of
@@ -49,7 +70,7 @@ pub fn is_bent(face: FaceRef) -> bool {
 pub fn steady_normals(
     mesh: &PolyMesh,
     links: &[Link],
-    normals: &[DVec3],
+    (normals, bent): (&[DVec3], &[bool]),
     width: f64,
 ) -> Vec<DVec3> {
     let mut longest = vec![[(0.0, NONE); 2]; mesh.face_count()];
@@ -68,7 +89,7 @@ pub fn steady_normals(
     let narrow = |face: FaceRef| {
         let long = longest[face.index()][0].0;
         let wide = face.area_vector().length();
-        is_bent(face) && wide < long * width.min(long / NARROW)
+        bent[face.index()] && wide < long * width.min(long / NARROW)
     };
     let narrow: Vec<bool> = mesh.faces().map(narrow).collect();
     let beyond = |face: u32| {
@@ -206,11 +227,10 @@ pub fn add_contours(
     mesh: &PolyMesh,
     (base, id): (u32, u32),
     (links, joined): (&[Link], &[bool]),
-    normals: &[DVec3],
+    (normals, bent): (&[DVec3], &[bool]),
     beside: impl Fn(&Model, u32, u32) -> DVec3,
 ) {
-    let bent: Vec<bool> = mesh.faces().map(is_bent).collect();
-    let mut corners = Corners::of(mesh, &bent);
+    let mut corners = Corners::of(mesh, bent);
     let inner = |link: &Link| [link.left, link.right].map(|f| bent[f as usize]);
     let joined = || links.iter().zip(joined).filter(|(_, joined)| **joined).map(|(link, _)| link);
     for link in joined().filter(|link| inner(link) == [true; 2]) {
@@ -426,7 +446,7 @@ mod tests {
         }
         let normals: Vec<DVec3> = mesh.faces().map(|f| f.area_vector().normalize()).collect();
         let links = links(&mesh);
-        let steady = steady_normals(&mesh, &links, &normals, 0.01);
+        let steady = steady_normals(&mesh, &links, (&normals, &[true; 4]), 0.01);
         assert!(normals[1].z < 0.5 && steady[1] == DVec3::Z);
         assert_eq!(steady[2..], normals[2..]);
     }

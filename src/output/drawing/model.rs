@@ -13,7 +13,7 @@ use super::{
     frustum::{Visible, before_eye, is_near},
     lattice::{Lattice, Plane},
     links::{self, Link, NONE, links},
-    mesh_contour::{add_contours, is_bent, steady_normals},
+    mesh_contour::{add_contours, bent_faces, steady_normals},
     patches::faithful_origins,
     pieces::{Homes, Sides},
     round::Bow,
@@ -316,15 +316,21 @@ impl Model {
         let (mesh, id) = (&*body.mesh, body.id);
         let open = links.iter().any(|l| l.right == NONE && !body.is_cut(l.a, l.b));
         let mut faces = self.add_facets(mesh, base, open);
-        if mesh.faces().any(is_bent) {
-            faces.steady = steady_normals(mesh, links, &faces.normals, self.bound / CHORD);
+        let tolerance = self.bound / CHORD;
+        let bent = bent_faces(mesh, links, &faces.normals, tolerance);
+        if bent.contains(&true) {
+            faces.steady = steady_normals(mesh, links, (&faces.normals, &bent), tolerance);
         }
         let faces = faces;
-        let inner = |link: &Link| !open && is_inner(mesh, link, &faces, round, body.crease);
+        let inner = |link: &Link| {
+            let sides = [link.left, link.right];
+            let bends = link.right != NONE && sides.iter().any(|&f| bent[f as usize]);
+            !open && bends && !is_sharp(mesh, link, &faces, round, body.crease)
+        };
         let inner: Vec<bool> = links.iter().map(inner).collect();
         if inner.contains(&true) {
             let normal = |_: &Model, face: u32, _: u32| faces.normals[face as usize];
-            add_contours(self, mesh, (base, id), (links, &inner), &faces.steady, normal);
+            add_contours(self, mesh, (base, id), (links, &inner), (&faces.steady, &bent), normal);
         }
         for (link, inner) in links.iter().zip(&inner) {
             let turns = || kind(mesh, link, &faces, round, body.crease);
@@ -492,15 +498,6 @@ fn folded_grids<'a>(
     let bound = options.tolerance.mm() * CHORD;
     let near = scene.grids.iter().filter(|(grid, _)| grid.points().iter().all(is_near));
     near.map(|&(grid, id)| (Folded::new(grid, camera, bound), id)).collect()
-}
-
-/// Whether an edge only parts facets of one surface that is known by its facets alone, or such a facet and what it goes on
-/// into: the contour is traced beside it.
-fn is_inner(mesh: &PolyMesh, link: &Link, faces: &Faces, round: &[bool], crease: f64) -> bool {
-    let bent = |f: u32| is_bent(mesh.face(f as usize));
-    link.right != NONE
-        && (bent(link.left) || bent(link.right))
-        && !is_sharp(mesh, link, faces, round, crease)
 }
 
 /// What an edge is drawn as; `None` when it only parts facets of one surface.

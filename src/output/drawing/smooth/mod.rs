@@ -21,7 +21,7 @@ use super::{
     frustum::Visible,
     lattice::Plane,
     links::{Link, NONE, each_side},
-    mesh_contour::{add_contours, is_bent, steady_normals},
+    mesh_contour::{add_contours, bent_faces, steady_normals},
     model::{CHORD, Edge, FOLDED, Facet, Model, Outline},
     outline::FARTHEST,
     patches::{Patch, Patches},
@@ -164,14 +164,15 @@ impl Smooth<'_> {
 
     /// Adds the contours of surfaces that are known by their facets alone, and tells of each link whether it is within one.
     fn trace_bent(&mut self, links: &[Link]) -> Vec<bool> {
-        if !self.mesh.faces().any(is_bent) {
+        let (normals, tolerance) = (&self.patches.normals, self.model.bound / CHORD);
+        let bent = bent_faces(self.mesh, links, normals, tolerance);
+        if !bent.contains(&true) {
             return vec![false; links.len()];
         }
-        let width = self.model.bound / CHORD;
-        self.steady = steady_normals(self.mesh, links, &self.patches.normals, width);
-        let bent = |f: u32| f != NONE && is_bent(self.mesh.face(f as usize));
+        self.steady = steady_normals(self.mesh, links, (normals, &bent), tolerance);
         let is_inner = |link: &Link| {
-            let whole = link.right != NONE && (bent(link.left) || bent(link.right));
+            let bends = |f: u32| bent[f as usize];
+            let whole = link.right != NONE && (bends(link.left) || bends(link.right));
             whole && !self.is_sharp(link, self.patches_of(link), self.ends(link))
         };
         let inner: Vec<bool> = links.iter().map(is_inner).collect();
@@ -183,7 +184,7 @@ impl Smooth<'_> {
                 field.slope(model.space[(base + point) as usize]).1 * outward
             };
             let of = (base, self.id);
-            add_contours(self.model, self.mesh, of, (links, &inner), &self.steady, beside);
+            add_contours(self.model, self.mesh, of, (links, &inner), (&self.steady, &bent), beside);
         }
         inner
     }
