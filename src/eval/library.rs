@@ -16,6 +16,7 @@ const PRELUDE: &[(&str, &str)] = &[
     ("std/constants", include_str!("../../stdlib/constants.kata")),
     ("std/curves", include_str!("../../stdlib/curves.kata")),
     ("std/distance", include_str!("../../stdlib/distance.kata")),
+    ("std/isometric", include_str!("../../stdlib/isometric.kata")),
     ("std/lists", include_str!("../../stdlib/lists.kata")),
     ("std/mathematics", include_str!("../../stdlib/mathematics.kata")),
     ("std/measures", include_str!("../../stdlib/measures.kata")),

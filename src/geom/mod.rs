@@ -8,6 +8,7 @@ pub mod curved_grid;
 pub mod development;
 pub mod flatten;
 pub mod formula;
+pub mod isometric;
 pub mod joined_grid;
 pub mod light;
 pub mod mesh;
@@ -32,6 +33,7 @@ pub mod triangulate;
 pub mod trig;
 pub mod view;
 pub mod wide;
+pub mod wireframe;
 
 pub use bounds::Bounds;
 pub use charge::{Charge, Falloff};

@@ -7,6 +7,7 @@ pub mod data;
 pub mod dxf;
 pub mod error;
 pub mod heightmap;
+pub mod iso;
 pub mod obj;
 pub mod off;
 mod order;
@@ -20,6 +21,7 @@ pub mod weld;
 pub use data::Data;
 pub use error::{Place, ReadError};
 pub use heightmap::read_heights;
+pub use iso::read as read_isometric;
 pub use weld::weld;
 
 use crate::geom::{PolyMesh, Region, Tolerance};

@@ -9,6 +9,7 @@ use crate::{
     base::{Code, Diagnostic, FileError},
     geom::{
         CurvedGrid, Raster, Tolerance,
+        isometric::{IsoDrawing, IsoScale},
         spherical_projection::{Projection, solid_angle},
     },
     input,
@@ -120,6 +121,12 @@ impl Geometry for Realizer<'_> {
     fn heights(&self, file: &str) -> Result<Raster, GeometryError> {
         let bytes = self.bytes(file)?;
         input::read_heights(file, &bytes).map_err(|error| import::unreadable(file, &error))
+    }
+
+    fn isometric(&self, file: &str, scale: &IsoScale) -> Result<IsoDrawing, GeometryError> {
+        let bytes = self.bytes(file)?;
+        let found = input::read_isometric(file, &bytes, scale);
+        found.map_err(|error| import::unreadable(file, &error))
     }
 
     fn read(&self, file: &str) -> Result<Vec<u8>, FileError> {

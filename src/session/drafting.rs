@@ -17,7 +17,10 @@ use crate::{
     kernel::profile::{self, TextOptions},
     output::{
         drawing::{self, Camera, CameraError, Drawing, Window},
-        sheet::{self, CuttingLine, Dimension, Figure, Layer, Lettering, Shape, dimension_number},
+        sheet::{
+            self, CuttingLine, Dimension, Figure, IsometricGrid, Layer, Lettering, Shape,
+            dimension_number,
+        },
     },
     realize::{self, Realizer},
     shape::{
@@ -129,10 +132,12 @@ impl<'a> Drafter<'a> {
                 cuts,
                 axes: shown_axes,
                 cuttings,
+                grid: grid(view, &camera),
                 caption,
                 dimensions,
                 style,
             };
+            coarse_enough(&figure, view)?;
             Ok(Drawn { figure, warnings })
         })
     }
@@ -219,9 +224,28 @@ fn bounds(view: &ViewSpec, meshes: &[&PolyMesh], free: &[Outline]) -> Option<[DV
     corners
 }
 
+/// The guide mesh of a view.
+fn grid(view: &ViewSpec, camera: &Camera) -> Option<IsometricGrid> {
+    let origin = camera.project(DVec3::ZERO).unwrap_or_default();
+    view.grid.map(|pitch| IsometricGrid { origin, pitch, window: view.window })
+}
+
+/// Refuses a guide mesh of too many lines.
+fn coarse_enough(figure: &Figure, view: &ViewSpec) -> Result<(), Diagnostic> {
+    let Some(grid) = &figure.grid else { return Ok(()) };
+    let bare = Figure { grid: None, ..figure.clone() };
+    let outline = sheet::bounds(&bare.inks(1.0, &Letterer));
+    let lines = grid.lines(1.0, outline);
+    if lines <= sheet::MOST_LINES {
+        return Ok(());
+    }
+    let words = format!("the grid would have {lines} lines; the limit is {}", sheet::MOST_LINES);
+    Err(at(Code::Limit, words, view.place.0).help("give it a larger pitch"))
+}
+
 /// The warning for a drawing without lines.
 fn blank(drawing: &Drawing, view: &ViewSpec, bounds: Option<[DVec3; 2]>) -> Option<Diagnostic> {
-    if drawing.segments > 0 || !drawing.lines.is_empty() {
+    if drawing.segments > 0 || !drawing.lines.is_empty() || view.grid.is_some() {
         return None;
     }
     let warning = |words| Diagnostic::warning(Code::EmptyResult, words).label(view.place.0, "");
@@ -278,6 +302,7 @@ fn layer(name: PenName) -> Layer {
         PenName::Upper => Layer::Upper,
         PenName::Lower => Layer::Lower,
         PenName::Shadow => Layer::Shadow,
+        PenName::Grid => Layer::Grid,
     }
 }
 

@@ -8,7 +8,10 @@ use super::{Session, hold};
 use crate::{
     base::{Diagnostic, FileError, Phase, SourceId, watch::during},
     eval::{Host, Loaded, library},
-    geom::{CurvedGrid, Raster},
+    geom::{
+        CurvedGrid, Raster,
+        isometric::{IsoDrawing, IsoScale},
+    },
     realize,
     shape::{
         Geometry, GeometryError, Measures, ShapeGraph, ShapeId, SweptSurface,
@@ -114,6 +117,10 @@ impl Geometry for Session<'_> {
 
     fn heights(&self, file: &str) -> Result<Raster, GeometryError> {
         self.realizer.heights(file)
+    }
+
+    fn isometric(&self, file: &str, scale: &IsoScale) -> Result<IsoDrawing, GeometryError> {
+        self.realizer.isometric(file, scale)
     }
 
     fn read(&self, file: &str) -> Result<Vec<u8>, FileError> {

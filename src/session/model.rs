@@ -194,6 +194,7 @@ impl<'s> Model<'s> {
             center_lines: false,
             dims: vec![],
             cuttings: vec![],
+            grid: None,
             caption: None,
             place: Place(span),
         };

@@ -138,11 +138,13 @@ pub enum PenName {
     Lower,
     /// Outlines of cast shadows and lines in them.
     Shadow,
+    /// The guide mesh of isometric drawing.
+    Grid,
 }
 
 impl PenName {
     /// All of them with the words of the language.
-    pub const ALL: [(PenName, &'static str); 12] = [
+    pub const ALL: [(PenName, &'static str); 13] = [
         (PenName::Visible, "visible"),
         (PenName::Hidden, "hidden"),
         (PenName::Center, "center"),
@@ -155,6 +157,7 @@ impl PenName {
         (PenName::Upper, "upper"),
         (PenName::Lower, "lower"),
         (PenName::Shadow, "shadow"),
+        (PenName::Grid, "grid"),
     ];
 }
 
@@ -292,6 +295,8 @@ pub struct ViewSpec {
     pub dims: Vec<DimSpec>,
     /// Lines of cutting planes in the order they were given.
     pub cuttings: Vec<CuttingSpec>,
+    /// From line to line of the isometric guide mesh, if it is drawn; above 0.
+    pub grid: Option<f64>,
     /// What is written above it.
     pub caption: Option<Arc<str>>,
     /// The call that made it.

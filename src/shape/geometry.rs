@@ -11,7 +11,10 @@ use super::{
 };
 use crate::{
     base::{Diagnostic, FileError},
-    geom::{CurvedGrid, Raster},
+    geom::{
+        CurvedGrid, Raster,
+        isometric::{IsoDrawing, IsoScale},
+    },
 };
 
 /// Measures of a solid's closed boundary, or of a profile's region.
@@ -143,6 +146,9 @@ pub trait Geometry {
 
     /// The numbers of a height map (path relative to the project root).
     fn heights(&self, file: &str) -> Result<Raster, GeometryError>;
+
+    /// The lines of an isometric drawing (path relative to the project root).
+    fn isometric(&self, file: &str, scale: &IsoScale) -> Result<IsoDrawing, GeometryError>;
 
     /// The bytes of a file, for goldens and snapshots.
     fn read(&self, file: &str) -> Result<Vec<u8>, FileError>;

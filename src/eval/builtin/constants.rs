@@ -45,6 +45,7 @@ pub const TABLE: &[(&str, Native)] = &[
     ("constant.third_angle", |_, _| Ok(Value::Symbol(Symbol::ThirdAngle))),
     ("constant.auto", |_, _| Ok(Value::Symbol(Symbol::Auto))),
     ("constant.count", |_, _| Ok(Value::Symbol(Symbol::Count))),
+    ("constant.mark", |_, _| Ok(Value::Symbol(Symbol::Mark))),
     ("constant.clip", |_, _| Ok(Value::Symbol(Symbol::Clip))),
     ("constant.a0", |_, _| Ok(Value::Symbol(Symbol::A0))),
     ("constant.a1", |_, _| Ok(Value::Symbol(Symbol::A1))),

@@ -7,6 +7,7 @@ mod constants;
 mod curves;
 mod fields;
 mod files;
+mod isometric;
 mod lists;
 mod mathematics;
 mod measures;
@@ -54,6 +55,7 @@ pub fn find(name: &str) -> Option<Native> {
         lists::TABLE,
         fields::TABLE,
         files::TABLE,
+        isometric::TABLE,
         mathematics::TABLE,
         measures::TABLE,
         morphology::TABLE,

@@ -40,7 +40,7 @@ pub const TABLE: &[(&str, Native)] = &[
     ("view.caption", caption),
 ];
 
-/// `shapes, from, eye, target, fov, window, hidden, style, method, light, shadow`.
+/// `shapes, from, eye, target, fov, window, hidden, style, method, light, shadow, grid`.
 fn view(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
     let subjects = subjects(evaluator, args)?;
     let target = args.point(3)?;
@@ -52,6 +52,7 @@ fn view(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
         method: method(args)?,
         style: style(args, 7)?,
         shadow: cast(args)?,
+        grid: grid(args, projection)?,
         ..plain(evaluator, args, subjects, projection)
     };
     Ok(Value::Drawing(Arc::new(spec)))
@@ -71,6 +72,26 @@ fn cast(args: &Args) -> Outcome<Option<CastSpec>> {
     };
     let ground = shades::ground(args, (9, 10), &suns)?;
     Ok(Some(CastSpec { toward: sun.toward, ground }))
+}
+
+/// The pitch of the guide mesh, `{ iso_grid = pitch }`.
+fn grid(args: &Args, projection: Projection) -> Outcome<Option<f64>> {
+    if !args.given(11) {
+        return Ok(None);
+    }
+    let pitch = match args.value(11) {
+        Value::Record(record) => record.get("iso_grid"),
+        _ => None,
+    };
+    let Some(pitch) = pitch else {
+        let words = format!("`grid` is iso_grid(pitch), got {}", shown(args.value(11)));
+        return args.fail(11, Code::WrongKind, words);
+    };
+    if projection != Projection::Side(View::Iso) {
+        let words = "an isometric grid needs a view from ISO";
+        return args.fail(11, Code::BadCall, words);
+    }
+    positive(args, 11, "pitch", pitch, Dimension::LENGTH).map(Some)
 }
 
 /// A view of subjects with nothing else said of it.
@@ -96,6 +117,7 @@ fn plain(
         center_lines: false,
         dims: vec![],
         cuttings: vec![],
+        grid: None,
         caption: None,
         place: Place(evaluator.shown_at(args.call)),
     }

@@ -105,6 +105,8 @@ symbols! {
     Diamond = "DIAMOND",
     /// Dots that are bars.
     Line = "LINE",
+    /// The end of a stroke is a vertex.
+    Mark = "MARK",
     /// Hidden lines by clipping.
     Clip = "CLIP",
     /// The paper size A0.

@@ -8,6 +8,7 @@ use super::{
     cutting::CuttingLine,
     dimension::Dimension,
     hatch::{Cut, hatched},
+    isometric_grid::IsometricGrid,
     lettering::{Anchor, Lettering, write},
     page::{Group, Ink, Mark, Page, bounds, moved, placed},
     pen::{Layer, Style},
@@ -36,6 +37,8 @@ pub struct Figure {
     pub axes: Vec<[DVec2; 2]>,
     /// Where sections are cut.
     pub cuttings: Vec<CuttingLine>,
+    /// The guide mesh under it.
+    pub grid: Option<IsometricGrid>,
     /// What is written above it; may be empty.
     pub caption: String,
     /// Dimensions.
@@ -67,6 +70,9 @@ impl Figure {
         }
         for dimension in &self.dimensions {
             inks.extend(dimension.inks(scale, height, lettering));
+        }
+        if let Some(grid) = &self.grid {
+            inks.extend(grid.inks(scale, bounds(&inks), height, lettering));
         }
         if let Some((min, max)) = bounds(&inks).filter(|_| !self.caption.is_empty()) {
             let at = DVec2::new((min.x + max.x) / 2.0, max.y + height);

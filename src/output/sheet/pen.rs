@@ -5,6 +5,8 @@ use crate::geom::mesh::Color;
 /// What an ink stands for; files keep each in a layer of its own.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub enum Layer {
+    /// The guide mesh of isometric drawing.
+    Grid,
     /// Half-tones.
     Tone,
     /// Outlines of cast shadows and lines in them.
@@ -39,7 +41,8 @@ pub enum Layer {
 
 impl Layer {
     /// All of them, from the lowest to the topmost.
-    pub const ALL: [Layer; 15] = [
+    pub const ALL: [Layer; 16] = [
+        Layer::Grid,
         Layer::Tone,
         Layer::Shadow,
         Layer::Hatch,
@@ -60,6 +63,7 @@ impl Layer {
     /// Its name in files: the class in SVG, the layer in DXF and PDF.
     pub fn name(self) -> &'static str {
         match self {
+            Layer::Grid => "grid",
             Layer::Tone => "tone",
             Layer::Shadow => "shadow",
             Layer::Hatch => "hatch",
@@ -93,14 +97,15 @@ impl Layer {
             Layer::Cutting => (0.5, &CHAIN),
             Layer::Free | Layer::Title => (0.35, &[]),
             Layer::Frame => (0.7, &[]),
-            Layer::Lower => (0.13, &[]),
+            Layer::Lower | Layer::Grid => (0.13, &[]),
             Layer::Shadow => (0.18, &[]),
             Layer::Tone | Layer::Hatch | Layer::Pattern | Layer::Upper | Layer::Dimension => {
                 (0.25, &[])
             }
         };
         let dash = dash.iter().map(|part| part * width).collect();
-        Pen { width, dash, color: BLACK }
+        let color = if self == Layer::Grid { PALE } else { BLACK };
+        Pen { width, dash, color }
     }
 }
 
@@ -109,6 +114,8 @@ const DASHED: [f64; 2] = [12.0, 3.0];
 /// Long dash, gap, dot, gap of line type 04 in line widths.
 const CHAIN: [f64; 4] = [24.0, 3.0, 0.5, 3.0];
 const BLACK: Color = Color { r: 0, g: 0, b: 0 };
+/// The blue of graph paper.
+const PALE: Color = Color { r: 143, g: 170, b: 199 };
 
 /// How a line is drawn.
 #[derive(Clone, PartialEq, Debug)]

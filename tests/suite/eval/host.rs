@@ -6,7 +6,10 @@ use glam::{DMat3, DVec3};
 use katachi::{
     base::{Code, Diagnostic, FileError, Shelf, SourceMap, World},
     eval::{Evaluator, Host, InstanceId, Limits, Loaded, Override, library},
-    geom::{CurvedGrid, Raster},
+    geom::{
+        CurvedGrid, Raster,
+        isometric::{IsoDrawing, IsoScale},
+    },
     shape::{
         Geometry, GeometryError, Measures, Node, ShapeGraph, ShapeId, SweptSurface,
         geometry::{Data, Imported, InsideMethod},
@@ -150,6 +153,10 @@ impl Geometry for Bench<'_> {
 
     fn heights(&self, _: &str) -> Result<Raster, GeometryError> {
         Ok(Raster::new(2, vec![0.0, 1.0, 2.0, 3.0]).expect("2 x 2 numbers"))
+    }
+
+    fn isometric(&self, _: &str, scale: &IsoScale) -> Result<IsoDrawing, GeometryError> {
+        Ok(IsoDrawing { vertices: vec![scale.origin], ..IsoDrawing::default() })
     }
 
     fn read(&self, file: &str) -> Result<Vec<u8>, FileError> {
