@@ -114,6 +114,7 @@ fn funnel(mm: f64) -> Polyhedron {
     loft(&sections, false, tolerance(mm)).expect("a funnel")
 }
 
+#[allow(clippy::disallowed_methods, reason = "timing is its work")]
 fn time(case: &str, runs: u32, make: impl Fn() -> Polyhedron) {
     let mut best = f64::INFINITY;
     for _ in 0..runs {

@@ -16,7 +16,7 @@ use rustc_hash::FxHashMap;
 use super::{
     Camera,
     links::{Link, NONE},
-    model::Model,
+    model::{CHORD, Model},
     scene::Kind,
     thread::{Knot, Thread},
 };
@@ -39,6 +39,9 @@ const MOST_BENT: f64 = 0.25;
 /// Facets around a contour stick out by so many times as much as their sides are bent, at most.
 const OUTSIDE: f64 = 2.0;
 
+/// Facets of a surface that is made anew are off by no more than this part of the tolerance.
+const KEPT: f64 = 1.5;
+
 /// Whether faces are facets of a surface that is known by its facets alone, and keep to it as drawings ask. Where neighbours
 /// mostly turn so much that a surface through them would be farther off than `most` mm, they stand for themselves.
 pub fn bent_faces(mesh: &PolyMesh, links: &[Link], normals: &[DVec3], most: f64) -> Vec<bool> {
@@ -52,14 +55,18 @@ pub fn bent_faces(mesh: &PolyMesh, links: &[Link], normals: &[DVec3], most: f64)
             continue;
         }
         let side = mesh.points[link.a as usize].distance(mesh.points[link.b as usize]);
-        let wide: f64 = faces.iter().map(|f| f.area_vector().length()).sum::<f64>() / side;
+        let across = |f: &FaceRef| {
+            let sides = if f.outer().len() == 3 { 1.0 } else { 2.0 };
+            f.area_vector().length() / (sides * side)
+        };
+        let wide: f64 = faces.iter().map(across).sum();
         let turn = normals[link.left as usize].distance(normals[link.right as usize]);
         // The height of an arc over a chord as wide as both facets are in the mean.
         off[origin as usize].push(turn * wide / 16.0);
     }
     let is_coarse = |mut off: Vec<f64>| {
         let middle = off.len() / 2;
-        !off.is_empty() && *off.select_nth_unstable_by(middle, f64::total_cmp).1 > most
+        !off.is_empty() && *off.select_nth_unstable_by(middle, f64::total_cmp).1 > most * KEPT
     };
     let coarse: Vec<bool> = off.into_iter().map(is_coarse).collect();
     mesh.faces().map(|face| is_known(face) && !coarse[face.origin_index() as usize]).collect()
@@ -398,20 +405,20 @@ impl Tracer<'_, '_> {
         self.add_curve(&run[from..], id);
     }
 
-    /// Adds a run of passages as a smooth curve, cut where its picture turns back.
+    /// Adds a run of passages as a smooth curve, cut where its picture turns back. What is shorter than facets may be off is
+    /// none of the surface.
     fn add_curve(&mut self, run: &[u32], id: u32) {
-        let image =
-            |i: usize| -> DVec2 { self.model.camera.image(self.passages[run[i] as usize].at).0 };
-        let turns_back = |i: &usize| {
-            let [p, q, r] = [i - 1, *i, i + 1].map(image);
-            (q - p).dot(r - q) < 0.0
-        };
+        let image = |&p: &u32| self.model.camera.image(self.passages[p as usize].at).0;
+        let images: Vec<DVec2> = run.iter().map(image).collect();
+        let turns_back =
+            |i: &usize| (images[*i] - images[i - 1]).dot(images[i + 1] - images[*i]) < 0.0;
         let last = run.len() - 1;
         let cusps: Vec<usize> = (1..last.max(1)).filter(turns_back).collect();
         let mut from = 0;
         for &to in cusps.iter().chain([&last]) {
             let cusp = |i: usize| cusps.binary_search(&i).is_ok();
-            if to > from {
+            let length: f64 = images[from..=to].windows(2).map(|p| p[0].distance(p[1])).sum();
+            if length > self.model.bound / CHORD {
                 let knots = (from..=to).map(|i| self.knot(run, i, cusp(i))).collect();
                 self.model.threads.push(Thread::free(Kind::Contour, id, knots));
             }
