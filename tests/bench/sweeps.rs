@@ -80,8 +80,6 @@ fn bolt(mm: f64) -> Polyhedron {
         at(outer, -0.0625),
         at(core, -0.375),
     ];
-    let mut ridge = ridge.to_vec();
-    ridge.reverse();
     let helix = Turn {
         center: DVec3::Z * (5.0 - pitch),
         x: DVec3::X * core,
@@ -92,7 +90,8 @@ fn bolt(mm: f64) -> Polyhedron {
     };
     let path = Curve::turn(helix);
     let way = Along { frame: Frame::Upright, ..Along::path(&path) };
-    let wound = along(&region(ridge, EdgeCurve::Line), &way, tolerance(mm)).expect("a ridge");
+    let wound =
+        along(&region(ridge.to_vec(), EdgeCurve::Line), &way, tolerance(mm)).expect("a ridge");
     let leaf = |solid: Polyhedron| Tree::Leaf(solid.into());
     let up = Placement::translation(DVec3::Z * 5.0);
     let rod = cone(core, core, 30.0, 32).placed(&up);

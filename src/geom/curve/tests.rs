@@ -127,3 +127,45 @@ fn points_keep_within_the_tolerance() {
     let circle = Curve::smooth(&square(10.0), true).expect("a circle");
     assert!((circle.length() - TAU * 10.0).abs() < 1e-11);
 }
+
+#[test]
+fn corners_are_rounded_where_arcs_fit() {
+    let square = Curve::polyline(&square(5.0), true).expect("a square");
+    let round = square.rounded(2.0).expect("it fits");
+    assert_eq!(round.pieces().len(), 8);
+    assert!((round.length() - (24.0 + 4.0 * PI)).abs() < 1e-12);
+    assert!((0..8).all(|joint| round.is_smooth_at(joint)));
+    assert!(matches!(square.rounded(6.0), Err(PlaneError::Tight { fits, .. }) if fits == 5.0));
+}
+
+#[test]
+fn parallels_keep_their_distance() {
+    let corner = [dvec3(0., 0., 0.), dvec3(10., 0., 0.), dvec3(10., 8., 0.)];
+    let corner = Curve::polyline(&corner, false).expect("a corner");
+    // To the right of its way is outside, where the corner is an arc; inside both sides are cut.
+    let (out, inside) =
+        (corner.offset(2.0).expect("outside"), corner.offset(-2.0).expect("inside"));
+    assert!((out.length() - (18.0 + PI)).abs() < 1e-12, "{}", out.length());
+    assert!((inside.length() - 14.0).abs() < 1e-6, "{}", inside.length());
+    let corners = square(1.0).map(|p| dvec3(9.0 * p.x, 6.0 * p.y, 0.0));
+    let ellipse = Curve::smooth(&corners, true).expect("an ellipse");
+    for d in [1.5, -1.5] {
+        let parallel = ellipse.offset(d).expect("wide enough");
+        for i in 0..100 {
+            let p = parallel.at(parallel.place(f64::from(i) / 100.0));
+            let off = ellipse.at(ellipse.nearest(p)).distance(p);
+            assert!((off - d.abs()).abs() < 1e-5, "{d} {i}: {off}");
+        }
+    }
+    // Its narrowest radius is 36 / 9.
+    assert!(matches!(ellipse.offset(-5.0), Err(PlaneError::Narrow { .. })));
+    let helix = Turn {
+        center: DVec3::ZERO,
+        x: DVec3::X,
+        y: DVec3::Y,
+        rise: DVec3::Z,
+        from: 0.0,
+        to: 360.0,
+    };
+    assert_eq!(Curve::turn(helix).offset(0.1), Err(PlaneError::NotFlat));
+}
