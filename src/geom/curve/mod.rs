@@ -174,7 +174,7 @@ impl Curve {
     /// use katachi::geom::Curve;
     /// let corner = [dvec3(0., 0., 0.), dvec3(3., 0., 0.), dvec3(3., 5., 0.)];
     /// let curve = Curve::polyline(&corner, false).unwrap();
-    /// assert_eq!(curve.at(curve.place(0.5)), dvec3(3., 1., 0.));
+    /// assert!(curve.at(curve.place(0.5)).distance(dvec3(3., 1., 0.)) < 1e-12);
     /// ```
     pub fn place(&self, part: f64) -> f64 {
         let wanted = self.length() * part.clamp(0.0, 1.0);
