@@ -112,6 +112,9 @@ fn round_corners(region: &Region, sweep: &Along) -> Result<Curve, SweepError> {
 /// Lengths below this part of the size are none; points of a profile nearer than it are one.
 const ONE: f64 = 1e-9;
 
+/// Places of a piece where a first look is taken at how it bends.
+const LOOKS: u32 = 16;
+
 /// A mitre may be so many times longer than the profile is wide.
 const LONGEST: f64 = 100.0;
 
@@ -127,8 +130,12 @@ impl Way<'_> {
         let places: Vec<f64> = (0..=path.pieces().len()).map(|i| i as f64).collect();
         let points: Vec<DVec2> =
             self.region.contours().flat_map(|c| c.points.iter().copied()).collect();
+        // Folds would ask for stations without end: first those that a rough look finds.
+        let rough =
+            (0..path.pieces().len() as u32 * LOOKS).map(|i| f64::from(i) / f64::from(LOOKS));
+        self.check_bends(rough)?;
         let all = stations_of(self, &places, &points, tolerance)?;
-        self.check_bends(&all)?;
+        self.check_bends(all.iter().map(|station| station.place))?;
         let size = path.length() + points.iter().map(|p| p.length()).fold(0.0, f64::max);
         let runs = self.runs();
         let steps: Vec<Step> = all.windows(2).map(|pair| self.step(&runs, pair)).collect();
@@ -213,22 +220,22 @@ impl Way<'_> {
     }
 
     /// Refuses bends that are narrower than the profile reaches inwards.
-    fn check_bends(&self, all: &[Station]) -> Result<(), SweepError> {
+    fn check_bends(&self, places: impl Iterator<Item = f64>) -> Result<(), SweepError> {
         let Along { path, repair, frame, .. } = self.sweep;
         if repair == Repair::Union || frame == Frame::Fixed {
             return Ok(());
         }
-        for station in all {
-            let (piece, s) = split(station.place, path.pieces().len());
+        for place in places {
+            let (piece, s) = split(place, path.pieces().len());
             let curvature = path.pieces()[piece].curvature(s);
             if curvature == DVec3::ZERO {
                 continue;
             }
             let stand = self.frames.at(piece, s)?;
             let inwards = DVec2::new(stand.x.dot(curvature), stand.y.dot(curvature));
-            let reach = self.reach(station.place, inwards.normalize_or_zero());
+            let reach = self.reach(place, inwards.normalize_or_zero());
             if reach * inwards.length() > 1.0 + ONE {
-                let (radius, part) = (1.0 / inwards.length(), path.part(station.place));
+                let (radius, part) = (1.0 / inwards.length(), path.part(place));
                 return Err(SweepError::Bend { reach, radius, part, at: stand.origin });
             }
         }

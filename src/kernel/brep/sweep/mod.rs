@@ -38,7 +38,7 @@ use super::{
 use crate::geom::{GridError, sweep::Repair};
 
 /// The most facets that a sweep makes.
-pub const MAX_FACETS: usize = 8_000_000;
+pub const MAX_FACETS: usize = 2_000_000;
 
 /// Why there is no sweep.
 #[derive(Clone, PartialEq, Debug, Error)]
