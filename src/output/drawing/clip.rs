@@ -89,7 +89,7 @@ impl<'a> Clipper<'a> {
                 self.cut(edge, &line, facet, cuts, steps);
             }
         });
-        spans(steps, 0, self.model.dust / line.length(), out);
+        spans(steps, 0, self.model.dust_of(edge) / line.length(), out);
     }
 
     /// Adds the steps of one facet.

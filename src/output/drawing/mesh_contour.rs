@@ -5,7 +5,7 @@
 //! picture. So corners get the normal of the surface, the mean of the facets around them up to the next edge, and the
 //! contour runs through a facet from side to side where the normal between two corners is square to the sight line; sides
 //! are bent as the normals at their ends ask for. What hides are the facets: a point of the contour is asked for so
-//! far outside the surface that the facets around it are not before it.
+//! far outside the surface that the facets around it are not before it. Faces that are known better are asked where it is.
 //!
 //! Source: A. Hertzmann and D. Zorin, Illustrating smooth surfaces, 2000; the bent sides are those of A. Vlachos and others,
 //! Curved PN triangles, 2001.
@@ -119,6 +119,15 @@ pub fn steady_normals(
 
 /// Narrow facets in a row, at most.
 const FARTHEST: usize = 16;
+
+/// Whether faces are bent or go on smoothly into bent ones; `joined` tells of each link whether it lies within one surface.
+pub fn loose_faces(links: &[Link], joined: &[bool], bent: &[bool]) -> Vec<bool> {
+    let mut loose = bent.to_vec();
+    for (link, _) in links.iter().zip(joined).filter(|(_, joined)| **joined) {
+        [link.left, link.right].iter().for_each(|&face| loose[face as usize] = true);
+    }
+    loose
+}
 
 /// Corners of bent faces, and the normals of the surface there.
 struct Corners<'a> {
@@ -432,7 +441,8 @@ impl Tracer<'_, '_> {
         let Passage { at, normal, .. } = self.passages[run[i] as usize];
         let tangent = normal.cross(self.model.camera.sight(at));
         let outside = at + normal * (off * OUTSIDE + self.model.bound);
-        Knot { point: self.model.add_point(outside), drawn: Some(at), tangent, stops: false, cusp }
+        let [point, _] = [outside, at].map(|p| self.model.add_point(p));
+        Knot { point, drawn: Some(at), tangent, stops: false, cusp }
     }
 }
 

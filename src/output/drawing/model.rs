@@ -13,7 +13,7 @@ use super::{
     frustum::{Visible, before_eye, is_near},
     lattice::{Lattice, Plane},
     links::{self, Link, NONE, links},
-    mesh_contour::{add_contours, bent_faces, steady_normals},
+    mesh_contour::{add_contours, bent_faces, loose_faces, steady_normals},
     patches::faithful_origins,
     pieces::{Homes, Sides},
     round::Bow,
@@ -29,6 +29,9 @@ const CONTACT: f64 = 1.0 / (1u64 << 26) as f64;
 
 /// Spans of edges shorter than this part of the picture are rounding: 64 lattice steps and more.
 const DUST: f64 = 1.0 / (1u64 << 38) as f64;
+
+/// Spans of edges longer than this part of the picture are no specks, however far chords may be off.
+const SPECK: f64 = 1e-3;
 
 /// A face whose picture is thinner than [`CONTACT`] is seen edge-on where the sine of the angle to the sight line is
 /// below this; others are small.
@@ -69,6 +72,8 @@ pub struct Facet {
     pub field: u32,
     /// A corner where that surface has a normal, as a cone has none at its apex.
     pub corner: u32,
+    /// Whether it is one of a surface that is known by its facets alone, or goes on smoothly into one.
+    pub loose: bool,
 }
 
 /// A line that is drawn where nothing hides it.
@@ -86,6 +91,8 @@ pub struct Edge {
     pub curve: u32,
     /// Whether no face beside it is in front.
     pub back: bool,
+    /// Whether a face beside it is known by its facets alone: then it is known no better than chords may be off.
+    pub loose: bool,
 }
 
 /// A body as ranges of the model's lists.
@@ -213,6 +220,7 @@ impl Model {
                     id: stroke.id,
                     curve: NONE,
                     back: false,
+                    loose: false,
                 });
             }
             base += stroke.points.len() as u32;
@@ -331,6 +339,11 @@ impl Model {
         if inner.contains(&true) {
             let normal = |_: &Model, face: u32, _: u32| faces.normals[face as usize];
             add_contours(self, mesh, (base, id), (links, &inner), (&faces.steady, &bent), normal);
+            for (face, loose) in loose_faces(links, &inner, &bent).into_iter().enumerate() {
+                if faces.facet[face] != NONE {
+                    self.facets[faces.facet[face] as usize].loose = loose;
+                }
+            }
         }
         for (link, inner) in links.iter().zip(&inner) {
             let turns = || kind(mesh, link, &faces, round, body.crease);
@@ -339,7 +352,9 @@ impl Model {
                 let (a, b) = (base + link.a, base + link.b);
                 let hides = |f: u32| f != NONE && faces.facet[f as usize] != NONE;
                 let back = !hides(link.left) && !hides(link.right);
-                self.edges.push(Edge { a, b, kind, id, curve: NONE, back });
+                let is_bent = |f: u32| f != NONE && bent[f as usize];
+                let loose = is_bent(link.left) || is_bent(link.right);
+                self.edges.push(Edge { a, b, kind, id, curve: NONE, back, loose });
             }
             self.add_outlines(link, base, &faces);
         }
@@ -423,7 +438,7 @@ impl Model {
         let corner = self.sides[first][0];
         let plane = Plane { normal, offset: normal.dot(self.space[corner as usize]) };
         let sides = [first as u32, self.sides.len() as u32];
-        self.facets.push(Facet { plane, sides, min, max, field: NONE, corner });
+        self.facets.push(Facet { plane, sides, min, max, field: NONE, corner, loose: false });
     }
 
     /// Adds a point.
@@ -457,6 +472,18 @@ impl Model {
                 self.outlines.push(Outline { a, b, facet, curve: NONE });
             }
         }
+    }
+
+    /// What is shorter than this, mm, is a speck if it belongs to a line that is known no better than chords may be off: a
+    /// gap so small between faces opens and closes with the facets, and whether it is there is not known. No feature goes
+    /// with it: the lines of one are longer, all together, unless it is smaller than the facets tell.
+    pub fn speck(&self) -> f64 {
+        self.bound.min(self.picture_size() * SPECK)
+    }
+
+    /// Spans of an edge shorter than this are not told from rounding, steps.
+    pub fn dust_of(&self, edge: &Edge) -> f64 {
+        if edge.loose { self.lattice.steps(self.speck()).max(self.dust) } else { self.dust }
     }
 
     /// The larger side of the picture, mm.

@@ -17,7 +17,7 @@ use super::{
     model::{Edge, Model},
     pieces::{Side, Sides, continues},
     scene::Kind,
-    span::Span,
+    span::{self, Span},
 };
 
 /// A line on a curved grid.
@@ -38,7 +38,7 @@ pub struct Thread {
 pub struct Knot {
     /// Its number in the model.
     pub point: u32,
-    /// Where it is drawn if not where it is hidden.
+    /// Where it is drawn if not where facets of its surface hide it: at the next point of the model.
     pub drawn: Option<DVec3>,
     /// A vector whose image runs along the line.
     pub tangent: DVec3,
@@ -365,7 +365,15 @@ impl Thread {
         if model.at[a as usize] == model.at[b as usize] {
             return vec![Span { order: u32::from(chord.sinks.contains(&true)), ..whole }];
         }
-        let edge = Edge { a, b, kind: self.kind, id: self.id, curve: NONE, back: false };
+        let edge = Edge {
+            a,
+            b,
+            kind: self.kind,
+            id: self.id,
+            curve: NONE,
+            back: false,
+            loose: self.is_traced(),
+        };
         let spared = |facet: u32| {
             model.homes.of(facet).is_some_and(|(home, front)| {
                 chord.spared[usize::from(front)]
@@ -373,6 +381,14 @@ impl Thread {
             })
         };
         let mut spans = vec![];
+        if edge.loose {
+            let is_loose = |facet: u32| model.facets[facet as usize].loose;
+            clipper.hide_but(&edge, desk, |facet| !is_loose(facet), &mut spans);
+            let mut others = vec![];
+            let place = Edge { a: a + 1, b: b + 1, ..edge };
+            clipper.hide_but(&place, desk, is_loose, &mut others);
+            return span::sum(&spans, &others);
+        }
         clipper.hide_but(&edge, desk, spared, &mut spans);
         for (end, _) in chord.sinks.iter().enumerate().filter(|(_, sinks)| **sinks) {
             let last = spans.len() - 1;
