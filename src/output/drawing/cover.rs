@@ -96,13 +96,13 @@ impl Cover {
         ends.map(|ends| (ends, ends.map(|t| segment.at(start, t)))).collect()
     }
 
-    /// Calls with the cells that a line runs through, and those beside it.
-    fn each_cell(&self, [p, q]: [DVec2; 2], mut found: impl FnMut([i64; 2])) {
+    /// Calls with the cells that are no farther than `near` from a line, and a few others.
+    fn each_cell(&self, [p, q]: [DVec2; 2], near: f64, mut found: impl FnMut([i64; 2])) {
         let place = |p: DVec2| [p.x, p.y].map(|x| (x / self.cell).floor() as i64);
         let count = (p.distance(q) / self.cell).ceil().max(1.0);
         for i in 0..count as u32 {
             let [a, b] = [i, i + 1].map(|k| p.lerp(q, f64::from(k) / count));
-            let [low, high] = [place(a.min(b) - self.near), place(a.max(b) + self.near)];
+            let [low, high] = [place(a.min(b) - near), place(a.max(b) + near)];
             for x in low[0]..=high[0] {
                 for y in low[1]..=high[1] {
                     found([x, y]);
@@ -114,7 +114,7 @@ impl Cover {
     fn add(&mut self, chord: Chord) {
         let number = self.chords.len() as u32;
         let mut cells = std::mem::take(&mut self.cells);
-        self.each_cell(chord.ends, |cell| {
+        self.each_cell(chord.ends, self.near, |cell| {
             let list = cells.entry(cell).or_default();
             if list.last() != Some(&number) {
                 list.push(number);
@@ -128,7 +128,7 @@ impl Cover {
     fn find(&mut self, ends: [DVec2; 2], class: Class, near: f64) {
         let mut covered = std::mem::take(&mut self.covered);
         covered.clear();
-        self.each_cell(ends, |cell| {
+        self.each_cell(ends, 0.0, |cell| {
             let list = self.cells.get(&cell).into_iter().flatten();
             let chords = list.map(|&i| &self.chords[i as usize]).filter(|c| c.class <= class);
             covered.extend(chords.filter_map(|chord| along(ends, chord.ends, near)));

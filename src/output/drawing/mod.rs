@@ -33,6 +33,12 @@
 //!   grazes a face passes to its left (see `lattice`); where lines coincide, the more important one is drawn.
 //! - A face hides what is behind its plane by more than 2^-26 of the scene's size; what lies in it is not hidden.
 //! - Back faces do not hide: an eye inside a solid sees out, an eye in a room sees the room.
+//! - Lines of surfaces that are known by their facets alone are known no better than the bound, by which chords may be off: a
+//!   quarter of the tolerance, by default a twentieth of the thinnest pen. Two of them that run along each other within twice
+//!   the bound are one, drawn as the more important. A part of one that is hidden otherwise than what is around it, but is
+//!   shorter than the bound, is a speck, and hidden as that is; a line shorter than the bound that joins no other is left out.
+//!   No feature goes with them: the lines around one that is larger than the bound are longer, and joined. Edges between
+//!   flat and round faces are exact, and drawn however short they are.
 //! - A round face is drawn as its true surface when its facets are within the tolerance of it; where two such surfaces
 //!   nearly touch, their facets decide which of them sticks out.
 //!

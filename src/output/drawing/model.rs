@@ -179,7 +179,9 @@ pub struct Model {
 struct Faces {
     /// Unit normals, outwards.
     normals: Vec<DVec3>,
-    /// The same without those of narrow facets; empty where all are flat or round.
+    /// Twice their areas, mm^2.
+    sizes: Vec<f64>,
+    /// The same normals without those of narrow facets; empty where all are flat or round.
     steady: Vec<DVec3>,
     /// The sign of their picture's area: positive when they face the eye.
     area: Vec<f64>,
@@ -325,9 +327,10 @@ impl Model {
         let open = links.iter().any(|l| l.right == NONE && !body.is_cut(l.a, l.b));
         let mut faces = self.add_facets(mesh, base, open);
         let tolerance = self.bound / CHORD;
-        let bent = bent_faces(mesh, links, &faces.normals, tolerance);
+        let known = (&faces.normals[..], &faces.sizes[..]);
+        let bent = bent_faces(mesh, links, known, tolerance);
         if bent.contains(&true) {
-            faces.steady = steady_normals(mesh, links, (&faces.normals, &bent), tolerance);
+            faces.steady = steady_normals(mesh, links, known, &bent, tolerance);
         }
         let faces = faces;
         let inner = |link: &Link| {
@@ -375,6 +378,7 @@ impl Model {
         let count = mesh.face_count();
         let mut faces = Faces {
             normals: Vec::with_capacity(count),
+            sizes: Vec::with_capacity(count),
             steady: vec![],
             area: Vec::with_capacity(count),
             facet: Vec::with_capacity(count),
@@ -385,7 +389,9 @@ impl Model {
             area[face as usize] += p.x * q.y - p.y * q.x;
         });
         for (face, mut area) in mesh.faces().zip(area) {
-            let normal = face.area_vector().normalize_or_zero();
+            let size = face.area_vector();
+            let normal = size.normalize_or_zero();
+            faces.sizes.push(size.length());
             if self.is_edge_on(face, base, area, normal) {
                 area = 0.0;
             }

@@ -272,10 +272,11 @@ impl Loom<'_, '_> {
 }
 
 impl Thread {
-    /// A line through points of the model, which all facets hide.
-    pub fn free(kind: Kind, id: u32, knots: Vec<Knot>) -> Thread {
-        let chord = Chord { homes: [NONE; 2], spared: [false; 2], sinks: [false; 2] };
-        let chords = vec![chord; knots.len().saturating_sub(1)];
+    /// A line through points of the model, which all facets hide. `sinks` tells of each chord whether it is behind what is
+    /// in front at its ends.
+    pub fn free(kind: Kind, id: u32, knots: Vec<Knot>, sinks: &[bool]) -> Thread {
+        let chord = |&sinks| Chord { homes: [NONE; 2], spared: [false; 2], sinks: [sinks; 2] };
+        let chords = sinks.iter().map(chord).collect();
         Thread { kind, id, knots, chords }
     }
 
@@ -387,7 +388,11 @@ impl Thread {
             let mut others = vec![];
             let place = Edge { a: a + 1, b: b + 1, ..edge };
             clipper.hide_but(&place, desk, is_loose, &mut others);
-            return span::sum(&spans, &others);
+            let mut spans = span::sum(&spans, &others);
+            if chord.sinks == [true; 2] {
+                spans.iter_mut().for_each(|span| span.order = span.order.max(1));
+            }
+            return spans;
         }
         clipper.hide_but(&edge, desk, spared, &mut spans);
         for (end, _) in chord.sinks.iter().enumerate().filter(|(_, sinks)| **sinks) {

@@ -171,11 +171,13 @@ impl Smooth<'_> {
     /// Adds the contours of surfaces that are known by their facets alone, and tells of each link whether it is within one.
     fn trace_bent(&mut self, links: &[Link]) -> Vec<bool> {
         let (normals, tolerance) = (&self.patches.normals, self.model.bound / CHORD);
-        let bent = bent_faces(self.mesh, links, normals, tolerance);
+        let sizes: Vec<f64> = self.mesh.faces().map(|f| f.area_vector().length()).collect();
+        let known = (&normals[..], &sizes[..]);
+        let bent = bent_faces(self.mesh, links, known, tolerance);
         if !bent.contains(&true) {
             return vec![false; links.len()];
         }
-        self.steady = steady_normals(self.mesh, links, (normals, &bent), tolerance);
+        self.steady = steady_normals(self.mesh, links, known, &bent, tolerance);
         let is_inner = |link: &Link| {
             let bends = |f: u32| bent[f as usize];
             let whole = link.right != NONE && (bends(link.left) || bends(link.right));
