@@ -265,6 +265,14 @@ impl<'a> FaceRef<'a> {
         &self.mesh.corners[start as usize..self.mesh.loop_ends[first] as usize]
     }
 
+    /// The corners of all its loops, one loop after the other.
+    #[inline]
+    pub fn corners(self) -> &'a [u32] {
+        let ends = self.loop_range();
+        let start = if ends.start == 0 { 0 } else { self.mesh.loop_ends[ends.start - 1] };
+        &self.mesh.corners[start as usize..self.mesh.loop_ends[ends.end - 1] as usize]
+    }
+
     /// The number of its plane.
     #[inline]
     pub fn plane(self) -> u32 {

@@ -144,7 +144,8 @@ mod tests {
     fn short_curves_on_an_ellipse_become_arcs_of_it() {
         let ellipse =
             Ellipse { center: dvec2(1.0, 2.0), major: DVec2::X * 3.0, minor: DVec2::Y * 3.0 };
-        let mark = Mark { class: Class::Hidden, order: 1, kind: Kind::Contour, id: 0 };
+        let mark =
+            Mark { class: Class::Hidden, order: 1, kind: Kind::Contour, id: 0, loose: false };
         let mut arcs = vec![ArcPiece { ellipse, from: 0.0, to: 3.0, mark }];
         let [p, q] = [0.5, 0.48].map(|t| ellipse.at(t));
         let along = |t: f64| {
@@ -161,7 +162,7 @@ mod tests {
     #[test]
     fn overlapping_arcs_are_drawn_once() {
         let ellipse = Ellipse { center: dvec2(1.0, 2.0), major: DVec2::X * 3.0, minor: DVec2::Y };
-        let mark = |class, order| Mark { class, order, kind: Kind::Sharp, id: 0 };
+        let mark = |class, order| Mark { class, order, kind: Kind::Sharp, id: 0, loose: false };
         let (seen, unseen) = (mark(Class::Visible, 0), mark(Class::Hidden, 1));
         let arc = |from, to, mark| ArcPiece { ellipse, from, to, mark };
         let out = merged(&[arc(1.0, 1.0 + TAU, unseen), arc(-1.0, 2.0, seen)], 1e-9);

@@ -3,7 +3,7 @@
 //! A facet hides of an edge what lies within its picture and behind its plane. Its sides cut the line of the
 //! edge in an even number of places, between which the edge runs in and out; the plane cuts it once.
 
-use std::ops::Range;
+use std::{collections::BTreeMap, ops::Range};
 
 use glam::DVec3;
 
@@ -89,7 +89,7 @@ impl<'a> Clipper<'a> {
                 self.cut(edge, &line, facet, cuts, steps);
             }
         });
-        spans(steps, 0, self.model.dust / line.length(), out);
+        spans(steps, 0, self.model.dust_of(edge) / line.length(), out);
     }
 
     /// Adds the steps of one facet.
@@ -138,8 +138,34 @@ impl<'a> Clipper<'a> {
     /// How many facets are in front of an edge at t; the edge runs along `line`. `on` is the true point there if the
     /// edge is a chord.
     pub fn order_at(&self, edge: &Edge, line: &Scanline, t: f64, on: Option<DVec3>) -> i32 {
+        let (mut order, mut folded) = (0, false);
+        self.each_before(edge, (line, t), on, |_, winding| {
+            order += winding;
+            folded |= winding < 0;
+        });
+        if folded { self.order_of_surfaces(edge, (line, t), on) } else { order }
+    }
+
+    /// The same where facets are turned over: they lie over neighbours of which one may be before the edge and the other
+    /// not, by less than they are off. But no surface lies over a point less than not at all.
+    #[cold]
+    fn order_of_surfaces(&self, edge: &Edge, place: (&Scanline, f64), on: Option<DVec3>) -> i32 {
+        let mut surfaces: BTreeMap<(u32, bool), i32> = BTreeMap::new();
+        self.each_before(edge, place, on, |facet, winding| {
+            *surfaces.entry((facet.field, facet.loose)).or_default() += winding;
+        });
+        surfaces.values().map(|order| (*order).max(0)).sum()
+    }
+
+    /// Calls with the facets in front of an edge at a place of its line, and how often each lies over it.
+    fn each_before(
+        &self,
+        edge: &Edge,
+        (line, t): (&Scanline, f64),
+        on: Option<DVec3>,
+        mut found: impl FnMut(&Facet, i32),
+    ) {
         let at = line.at(t);
-        let mut order = 0;
         self.cells.at(at, |i| {
             let facet = &self.model.facets[i as usize];
             let apart = (facet.min - 1.0).cmpgt(at) | (at - 1.0).cmpgt(facet.max);
@@ -153,11 +179,10 @@ impl<'a> Clipper<'a> {
                     _ => self.winding(facet, line, t),
                 };
                 if winding != 0 && (flat || self.hides(facet, edge, t, on)) {
-                    order += winding;
+                    found(facet, winding);
                 }
             }
         });
-        order
     }
 
     /// How often a facet lies over the point of a line at t: once or not at all, unless it folds over itself; less than

@@ -67,7 +67,7 @@ impl<'a> Counter<'a> {
         steps.sort_unstable_by(|a, b| a.at.total_cmp(&b.at));
         let (seed, before) = widest(steps);
         let order = self.clipper.order_at(edge, &line, seed, None);
-        spans(steps, order - before, self.model.dust / line.length(), out);
+        spans(steps, order - before, self.model.dust_of(edge) / line.length(), out);
     }
 
     /// The change of the order where an edge crosses an outline in front of it.

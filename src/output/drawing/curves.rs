@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn a_curve_drawn_twice_is_drawn_once() {
-        let mark = |class, id| Mark { class, order: 0, kind: Kind::Contour, id };
+        let mark = |class, id| Mark { class, order: 0, kind: Kind::Contour, id, loose: false };
         let cubic = |first, second, to| Segment::Cubic { first, second, to };
         let [a, b, c, d] = [(0., 0.), (1., 3.), (4., 3.), (5., 1.)].map(|(x, y)| dvec2(x, y));
         let tail = cubic(dvec2(6., 0.), dvec2(7., 0.), dvec2(8., 2.));

@@ -150,7 +150,7 @@ pub fn horizon_lines(
 /// All grid lines: seen along z, nothing is in front of anything.
 fn draw_all(field: &HeightField, camera: &Camera, id: u32) -> Drawing {
     let kind = if camera.toward().z > 0.0 { Kind::Upper } else { Kind::Lower };
-    let mark = Mark { class: Class::Visible, order: 0, kind, id };
+    let mark = Mark { class: Class::Visible, order: 0, kind, id, loose: false };
     let part = |(line, from, to)| Part { line, piece: Piece { from, to, mark } };
     finished(grid_edges(field, camera).map(part).collect(), camera)
 }
@@ -208,7 +208,7 @@ fn finished(mut parts: Vec<Part>, camera: &Camera) -> Drawing {
             }
             _ => {
                 let path = Path::of(from, Segment::Line { to });
-                let Mark { class, order, kind, id } = mark;
+                let Mark { class, order, kind, id, .. } = mark;
                 drawing.lines.push(Line { class, kind, id, order, path });
             }
         }
@@ -294,7 +294,7 @@ impl Horizon<'_> {
         });
         seen.sort_by(|a, b| a.0.from.total_cmp(&b.0.from));
         for (Rise { from, to, .. }, kind) in seen {
-            let mark = Mark { class: Class::Visible, order: 0, kind, id: self.id };
+            let mark = Mark { class: Class::Visible, order: 0, kind, id: self.id, loose: false };
             let [from, to] = [from, to].map(|t| self.on_paper(ends, t));
             let piece = Piece { from, to, mark };
             self.parts.push(Part { line: grid_line(ends), piece });

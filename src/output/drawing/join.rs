@@ -104,7 +104,7 @@ mod tests {
     use crate::output::drawing::{Class, Kind};
 
     fn line(from: [f64; 2], to: [f64; 2], id: u32) -> Drawn {
-        let mark = Mark { class: Class::Visible, order: 0, kind: Kind::Sharp, id };
+        let mark = Mark { class: Class::Visible, order: 0, kind: Kind::Sharp, id, loose: false };
         (Path::of(from.into(), Segment::Line { to: to.into() }), mark)
     }
 

@@ -32,6 +32,8 @@ pub struct Mark {
     pub kind: Kind,
     /// The body or stroke it belongs to.
     pub id: u32,
+    /// Whether it is known no better than chords may be off: see [`super::model::Edge::loose`].
+    pub loose: bool,
 }
 
 /// A direction as a number in (-1, 1] that grows with its angle, opposite directions alike.
@@ -258,7 +260,7 @@ mod tests {
 
     fn piece(from: [f64; 2], to: [f64; 2], class: Class) -> Piece {
         let order = u32::from(class == Class::Hidden);
-        let mark = Mark { class, order, kind: Kind::Sharp, id: 0 };
+        let mark = Mark { class, order, kind: Kind::Sharp, id: 0, loose: false };
         Piece { from: from.into(), to: to.into(), mark }
     }
 

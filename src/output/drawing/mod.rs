@@ -33,6 +33,12 @@
 //!   grazes a face passes to its left (see `lattice`); where lines coincide, the more important one is drawn.
 //! - A face hides what is behind its plane by more than 2^-26 of the scene's size; what lies in it is not hidden.
 //! - Back faces do not hide: an eye inside a solid sees out, an eye in a room sees the room.
+//! - Lines of surfaces that are known by their facets alone are known no better than the bound, by which chords may be off: a
+//!   quarter of the tolerance, by default a twentieth of the thinnest pen. Two of them that run along each other within twice
+//!   the bound are one, drawn as the more important. A part of one that is hidden otherwise than what is around it, but is
+//!   shorter than the bound, is a speck, and hidden as that is; a line shorter than the bound that joins no other is left out.
+//!   No feature goes with them: the lines around one that is larger than the bound are longer, and joined. Edges between
+//!   flat and round faces are exact, and drawn however short they are.
 //! - A round face is drawn as its true surface when its facets are within the tolerance of it; where two such surfaces
 //!   nearly touch, their facets decide which of them sticks out.
 //!
@@ -96,6 +102,7 @@ use clip::Clipper;
 use convex::Bodies;
 use count::Counter;
 use fit::{Fitted, Shape};
+use join::Drawn;
 use links::NONE;
 use merge::{Mark, Nearness, Piece};
 use model::{Edge, Model};
@@ -113,6 +120,11 @@ const LOOSE: f64 = 100.0;
 /// be off, or than curves that coincide: its walls are off by that where they are seen edge-on.
 const ROUGH: f64 = 0.1;
 
+/// Two lines that are known by facets alone stand for one if they are nearer than so many times what chords may be off: each
+/// may be off by once that, and which of them is off is not known. So the turns of a thread, whose chords lie apart, are
+/// one circle from above. A pen is wider than both, so no detail goes with them: what is left out lies under a line.
+const APART: f64 = 2.0;
+
 /// A line that is not so many times as long as coincident lines are apart is a dot: an edge seen end-on, or what rounding
 /// leaves of a line beside the end of another.
 const DOT: f64 = 200.0;
@@ -125,7 +137,8 @@ const DOT: f64 = 200.0;
 pub fn visible_lines(scene: &Scene, camera: &Camera, options: &Options) -> Drawing {
     let model = Model::new(scene, camera, options);
     let layered = matches!(options.hidden, Hidden::Depth(_));
-    let mut sheet = Sheet { layered, rough: scene.rough(), bound: model.bound, ..Sheet::default() };
+    let (rough, speck) = (scene.rough(), model.speck());
+    let mut sheet = Sheet { layered, rough, speck, bound: model.bound, ..Sheet::default() };
     hide(&model, options.method, &mut sheet);
     if let Some(window) = camera.window() {
         sheet.cut(&window);
@@ -147,6 +160,8 @@ struct Sheet {
     rough: Vec<u32>,
     /// How far chords may be off their curve, mm.
     bound: f64,
+    /// What is shorter is a speck if chords may be off, mm.
+    speck: f64,
 }
 
 /// Puts all edges on the sheet.
@@ -255,7 +270,8 @@ fn hide_threads(model: &Model, clipper: &Clipper, sheet: &mut Sheet) {
         |desk, thread| {
             let mut shapes = vec![];
             thread.hide(model, clipper, desk, sheet.layered, tolerance, |order, shape| {
-                shapes.push((shape, mark_of(thread.kind, thread.id, order)));
+                let loose = thread.is_traced();
+                shapes.push((shape, Mark { loose, ..mark_of(thread.kind, thread.id, order) }));
             });
             shapes
         },
@@ -273,7 +289,7 @@ fn hide_threads(model: &Model, clipper: &Clipper, sheet: &mut Sheet) {
 
 /// How a part of an edge behind so many faces is drawn.
 fn mark(edge: &Edge, order: u32) -> Mark {
-    mark_of(edge.kind, edge.id, order)
+    Mark { loose: edge.loose, ..mark_of(edge.kind, edge.id, order) }
 }
 
 /// How a part of a line behind so many faces is drawn.
@@ -284,7 +300,7 @@ fn mark_of(kind: Kind, id: u32, order: u32) -> Mark {
         _ if order == 0 => Class::Visible,
         _ => Class::Hidden,
     };
-    Mark { class, order, kind, id }
+    Mark { class, order, kind, id, loose: false }
 }
 
 impl Sheet {
@@ -367,9 +383,15 @@ impl Sheet {
             let arc = Segment::Arc { center, major, minor, from: a.from, to: a.to };
             (Path::of(a.ellipse.at(a.from), arc), a.mark)
         });
-        let mut all: Vec<(Path, Mark)> =
-            straight.chain(arcs).chain(curves::merged(curves, loose)).collect();
-        all.extend(cover::uncovered(self.traced, &all, rough));
+        let drawn = straight.chain(arcs).chain(curves::merged(curves, loose));
+        let (edges, mut all): (Vec<Drawn>, Vec<Drawn>) = drawn.partition(|(_, mark)| mark.loose);
+        let ends = (tolerance / 8.0).max(f64::MIN_POSITIVE);
+        let dot = tolerance * DOT;
+        let speck = self.speck.max(dot);
+        let edges = join::joined(edges, ends);
+        let edges = edges.into_iter().map(|line| (line, rough.max(self.bound * APART)));
+        let loose = edges.chain(self.traced.into_iter().map(|line| (line, rough)));
+        all.extend(cover::uncovered(loose.collect(), &all));
         let length = |class: Class| {
             let of = all.iter().filter(|(_, mark)| mark.class == class);
             of.map(|(path, _)| path.length()).sum::<f64>()
@@ -379,9 +401,9 @@ impl Sheet {
             visible: length(Class::Visible),
             hidden: length(Class::Hidden),
             segments: counted.map(|(path, _)| path.segments.len()).sum(),
-            lines: join::joined(all, (tolerance / 8.0).max(f64::MIN_POSITIVE))
+            lines: join::joined(all, ends)
                 .into_iter()
-                .filter(|(path, _)| path.length() > tolerance * DOT)
+                .filter(|(path, mark)| path.length() > if mark.loose { speck } else { dot })
                 .filter_map(|(path, mark)| line(path, mark, hidden))
                 .collect(),
         }

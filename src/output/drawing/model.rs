@@ -13,7 +13,7 @@ use super::{
     frustum::{Visible, before_eye, is_near},
     lattice::{Lattice, Plane},
     links::{self, Link, NONE, links},
-    mesh_contour::{add_contours, bent_faces, steady_normals},
+    mesh_contour::{add_contours, bent_faces, loose_faces, steady_normals},
     patches::faithful_origins,
     pieces::{Homes, Sides},
     round::Bow,
@@ -29,6 +29,9 @@ const CONTACT: f64 = 1.0 / (1u64 << 26) as f64;
 
 /// Spans of edges shorter than this part of the picture are rounding: 64 lattice steps and more.
 const DUST: f64 = 1.0 / (1u64 << 38) as f64;
+
+/// Spans of edges longer than this part of the picture are no specks, however far chords may be off.
+const SPECK: f64 = 1e-3;
 
 /// A face whose picture is thinner than [`CONTACT`] is seen edge-on where the sine of the angle to the sight line is
 /// below this; others are small.
@@ -69,6 +72,8 @@ pub struct Facet {
     pub field: u32,
     /// A corner where that surface has a normal, as a cone has none at its apex.
     pub corner: u32,
+    /// Whether it is one of a surface that is known by its facets alone, or goes on smoothly into one.
+    pub loose: bool,
 }
 
 /// A line that is drawn where nothing hides it.
@@ -86,6 +91,8 @@ pub struct Edge {
     pub curve: u32,
     /// Whether no face beside it is in front.
     pub back: bool,
+    /// Whether a face beside it is known by its facets alone: then it is known no better than chords may be off.
+    pub loose: bool,
 }
 
 /// A body as ranges of the model's lists.
@@ -172,7 +179,9 @@ pub struct Model {
 struct Faces {
     /// Unit normals, outwards.
     normals: Vec<DVec3>,
-    /// The same without those of narrow facets; empty where all are flat or round.
+    /// Twice their areas, mm^2.
+    sizes: Vec<f64>,
+    /// The same normals without those of narrow facets; empty where all are flat or round.
     steady: Vec<DVec3>,
     /// The sign of their picture's area: positive when they face the eye.
     area: Vec<f64>,
@@ -213,6 +222,7 @@ impl Model {
                     id: stroke.id,
                     curve: NONE,
                     back: false,
+                    loose: false,
                 });
             }
             base += stroke.points.len() as u32;
@@ -317,9 +327,10 @@ impl Model {
         let open = links.iter().any(|l| l.right == NONE && !body.is_cut(l.a, l.b));
         let mut faces = self.add_facets(mesh, base, open);
         let tolerance = self.bound / CHORD;
-        let bent = bent_faces(mesh, links, &faces.normals, tolerance);
+        let known = (&faces.normals[..], &faces.sizes[..]);
+        let bent = bent_faces(mesh, links, known, tolerance);
         if bent.contains(&true) {
-            faces.steady = steady_normals(mesh, links, (&faces.normals, &bent), tolerance);
+            faces.steady = steady_normals(mesh, links, known, &bent, tolerance);
         }
         let faces = faces;
         let inner = |link: &Link| {
@@ -331,6 +342,11 @@ impl Model {
         if inner.contains(&true) {
             let normal = |_: &Model, face: u32, _: u32| faces.normals[face as usize];
             add_contours(self, mesh, (base, id), (links, &inner), (&faces.steady, &bent), normal);
+            for (face, loose) in loose_faces(links, &inner, &bent).into_iter().enumerate() {
+                if faces.facet[face] != NONE {
+                    self.facets[faces.facet[face] as usize].loose = loose;
+                }
+            }
         }
         for (link, inner) in links.iter().zip(&inner) {
             let turns = || kind(mesh, link, &faces, round, body.crease);
@@ -339,7 +355,9 @@ impl Model {
                 let (a, b) = (base + link.a, base + link.b);
                 let hides = |f: u32| f != NONE && faces.facet[f as usize] != NONE;
                 let back = !hides(link.left) && !hides(link.right);
-                self.edges.push(Edge { a, b, kind, id, curve: NONE, back });
+                let is_bent = |f: u32| f != NONE && bent[f as usize];
+                let loose = is_bent(link.left) || is_bent(link.right);
+                self.edges.push(Edge { a, b, kind, id, curve: NONE, back, loose });
             }
             self.add_outlines(link, base, &faces);
         }
@@ -360,6 +378,7 @@ impl Model {
         let count = mesh.face_count();
         let mut faces = Faces {
             normals: Vec::with_capacity(count),
+            sizes: Vec::with_capacity(count),
             steady: vec![],
             area: Vec::with_capacity(count),
             facet: Vec::with_capacity(count),
@@ -370,7 +389,9 @@ impl Model {
             area[face as usize] += p.x * q.y - p.y * q.x;
         });
         for (face, mut area) in mesh.faces().zip(area) {
-            let normal = face.area_vector().normalize_or_zero();
+            let size = face.area_vector();
+            let normal = size.normalize_or_zero();
+            faces.sizes.push(size.length());
             if self.is_edge_on(face, base, area, normal) {
                 area = 0.0;
             }
@@ -423,7 +444,7 @@ impl Model {
         let corner = self.sides[first][0];
         let plane = Plane { normal, offset: normal.dot(self.space[corner as usize]) };
         let sides = [first as u32, self.sides.len() as u32];
-        self.facets.push(Facet { plane, sides, min, max, field: NONE, corner });
+        self.facets.push(Facet { plane, sides, min, max, field: NONE, corner, loose: false });
     }
 
     /// Adds a point.
@@ -457,6 +478,18 @@ impl Model {
                 self.outlines.push(Outline { a, b, facet, curve: NONE });
             }
         }
+    }
+
+    /// What is shorter than this, mm, is a speck if it belongs to a line that is known no better than chords may be off: a
+    /// gap so small between faces opens and closes with the facets, and whether it is there is not known. No feature goes
+    /// with it: the lines of one are longer, all together, unless it is smaller than the facets tell.
+    pub fn speck(&self) -> f64 {
+        self.bound.min(self.picture_size() * SPECK)
+    }
+
+    /// Spans of an edge shorter than this are not told from rounding, steps.
+    pub fn dust_of(&self, edge: &Edge) -> f64 {
+        if edge.loose { self.lattice.steps(self.speck()).max(self.dust) } else { self.dust }
     }
 
     /// The larger side of the picture, mm.

@@ -128,6 +128,14 @@ impl Model {
         let (min, max) = around(corners.iter().map(|&p| self.at[p as usize]));
         let plane = Plane { normal, offset: normal.dot(a) };
         let sides = [first, first + 3];
-        self.facets.push(Facet { plane, sides, min, max, field: NONE, corner: corners[0] });
+        self.facets.push(Facet {
+            plane,
+            sides,
+            min,
+            max,
+            field: NONE,
+            corner: corners[0],
+            loose: false,
+        });
     }
 }

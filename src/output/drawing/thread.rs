@@ -17,7 +17,7 @@ use super::{
     model::{Edge, Model},
     pieces::{Side, Sides, continues},
     scene::Kind,
-    span::Span,
+    span::{self, Span},
 };
 
 /// A line on a curved grid.
@@ -38,7 +38,7 @@ pub struct Thread {
 pub struct Knot {
     /// Its number in the model.
     pub point: u32,
-    /// Where it is drawn if not where it is hidden.
+    /// Where it is drawn if not where facets of its surface hide it: at the next point of the model.
     pub drawn: Option<DVec3>,
     /// A vector whose image runs along the line.
     pub tangent: DVec3,
@@ -272,10 +272,11 @@ impl Loom<'_, '_> {
 }
 
 impl Thread {
-    /// A line through points of the model, which all facets hide.
-    pub fn free(kind: Kind, id: u32, knots: Vec<Knot>) -> Thread {
-        let chord = Chord { homes: [NONE; 2], spared: [false; 2], sinks: [false; 2] };
-        let chords = vec![chord; knots.len().saturating_sub(1)];
+    /// A line through points of the model, which all facets hide. `sinks` tells of each chord whether it is behind what is
+    /// in front at its ends.
+    pub fn free(kind: Kind, id: u32, knots: Vec<Knot>, sinks: &[bool]) -> Thread {
+        let chord = |&sinks| Chord { homes: [NONE; 2], spared: [false; 2], sinks: [sinks; 2] };
+        let chords = sinks.iter().map(chord).collect();
         Thread { kind, id, knots, chords }
     }
 
@@ -365,7 +366,15 @@ impl Thread {
         if model.at[a as usize] == model.at[b as usize] {
             return vec![Span { order: u32::from(chord.sinks.contains(&true)), ..whole }];
         }
-        let edge = Edge { a, b, kind: self.kind, id: self.id, curve: NONE, back: false };
+        let edge = Edge {
+            a,
+            b,
+            kind: self.kind,
+            id: self.id,
+            curve: NONE,
+            back: false,
+            loose: self.is_traced(),
+        };
         let spared = |facet: u32| {
             model.homes.of(facet).is_some_and(|(home, front)| {
                 chord.spared[usize::from(front)]
@@ -373,6 +382,18 @@ impl Thread {
             })
         };
         let mut spans = vec![];
+        if edge.loose {
+            let is_loose = |facet: u32| model.facets[facet as usize].loose;
+            clipper.hide_but(&edge, desk, |facet| !is_loose(facet), &mut spans);
+            let mut others = vec![];
+            let place = Edge { a: a + 1, b: b + 1, ..edge };
+            clipper.hide_but(&place, desk, is_loose, &mut others);
+            let mut spans = span::sum(&spans, &others);
+            if chord.sinks == [true; 2] {
+                spans.iter_mut().for_each(|span| span.order = span.order.max(1));
+            }
+            return spans;
+        }
         clipper.hide_but(&edge, desk, spared, &mut spans);
         for (end, _) in chord.sinks.iter().enumerate().filter(|(_, sinks)| **sinks) {
             let last = spans.len() - 1;

@@ -272,13 +272,15 @@ fn wrong_on_contours(fine: &Fine, drawing: &Drawing) -> [usize; 2] {
     for (start, segment) in seen.flat_map(|l| l.path.pieces()) {
         for t in [0.1, 0.3, 0.5, 0.7, 0.9] {
             let [p, q] = [t, t + 1e-4].map(|t| segment.at(start, t));
-            let across = (q - p).perp().normalize_or_zero() * 0.1;
-            let parted = match [p + across, p - across].map(|at| fine.first(at)) {
+            let across = (q - p).perp().normalize_or_zero();
+            let parted = |by: f64| match [p + across * by, p - across * by].map(|at| fine.first(at))
+            {
                 [Some(a), Some(b)] => (a - b).abs() > 0.05,
                 [a, b] => a.is_some() != b.is_some(),
             };
             all += 1;
-            wrong += usize::from(!parted);
+            // Beside a border a fold may be thinner than the first step.
+            wrong += usize::from(![0.1, 0.02, 0.005].into_iter().any(parted));
         }
     }
     [wrong, all]
@@ -304,8 +306,8 @@ fn twisted_cells_are_drawn_as_the_surface_is_seen() {
             let (fine, drawing) = (Fine::new(shape, &camera), shape.drawn(&camera));
             let [wrong, all] = wrong_on_lines(shape, &fine, &camera, &drawing);
             let [false_ends, ends] = wrong_on_contours(&fine, &drawing);
-            // Where a fold bends little, its other side lies close behind it.
-            if wrong * 100 > all || false_ends * 4 > ends + 8 {
+            // Chords of the true surface lie within it: enlarged before a near eye, farther than the first step.
+            if wrong * 100 > all || false_ends * 20 > ends {
                 let text =
                     format!("{number}: {wrong} of {all}, {false_ends} of {ends}: {camera:?}");
                 report.push(text);

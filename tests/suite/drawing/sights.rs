@@ -36,11 +36,6 @@ const OVERDRAWN: f64 = 0.005;
 /// The same for visible and hidden lines together: different lines may come that near to each other by chance.
 const OVERDRAWN_IN_ALL: f64 = 0.01;
 
-/// An example whose threads are drawn wrong: turns that fall together in the picture are not drawn as one.
-const OVERLAPPING: &str = "bolt_and_nut.kata";
-/// A part of it that shows specks of microns of the thread inside.
-const WRONG: &str = "nut";
-
 /// Where the examples are looked at from.
 #[derive(Clone, Copy, Debug)]
 enum View {
@@ -342,7 +337,7 @@ fn faults(root: &Path, model: &str, part: &Path, view: View) -> Vec<String> {
     for (what, lines, most) in [("visible", &lines, OVERDRAWN), ("all", &both, OVERDRAWN_IN_ALL)] {
         let (twice, at, all) = overdraw(lines);
         let ratio = all / (all - twice).max(1e-9);
-        if ratio > 1.0 + most && !model.ends_with(OVERLAPPING) {
+        if ratio > 1.0 + most {
             faults.push(format!(
                 "{model}: {name} {view:?}: {what} lines overlap {ratio:.4}, at {at}"
             ));
@@ -352,7 +347,7 @@ fn faults(root: &Path, model: &str, part: &Path, view: View) -> Vec<String> {
         ("drawn and not seen", drawn_unseen(&sights, &lines)),
         ("seen and not drawn", seen_undrawn(&sights, &lines)),
     ] {
-        if share > SHARE && !(model.ends_with(OVERLAPPING) && name == WRONG) {
+        if share > SHARE {
             let share = share * 100.0;
             faults.push(format!("{model}: {name} {view:?}: {share:.2} % is {what}, at {at}"));
         }

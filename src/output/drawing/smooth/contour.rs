@@ -72,7 +72,7 @@ impl Smooth<'_> {
             self.parts.push((face, [a, b]));
             self.add_outline(face, [a, b], curve);
             let (kind, id) = (Kind::Contour, self.id);
-            self.model.edges.push(Edge { a, b, kind, id, curve, back: false });
+            self.model.edges.push(Edge { a, b, kind, id, curve, back: false, loose: false });
         }
     }
 

@@ -21,7 +21,7 @@ use super::{
     frustum::Visible,
     lattice::Plane,
     links::{Link, NONE, each_side},
-    mesh_contour::{add_contours, bent_faces, steady_normals},
+    mesh_contour::{add_contours, bent_faces, loose_faces, steady_normals},
     model::{CHORD, Edge, FOLDED, Facet, Model, Outline},
     outline::FARTHEST,
     patches::{Patch, Patches},
@@ -61,6 +61,10 @@ struct Smooth<'a> {
     fields: Vec<u32>,
     /// Normals of faces, without those of narrow facets; empty where all are flat or round.
     steady: Vec<DVec3>,
+    /// Whether faces are known by their facets alone; empty where none are.
+    bent: Vec<bool>,
+    /// The same with those that go on smoothly into them.
+    loose: Vec<bool>,
     /// Whether the edge at hand is within a surface whose contour is traced by its facets.
     within: bool,
     /// Sides of the front part of faces.
@@ -98,6 +102,8 @@ pub fn add_body(
         turns: vec![(NONE, 0.0); mesh.points.len()],
         fields: vec![],
         steady: vec![],
+        bent: vec![],
+        loose: vec![],
         within: false,
         parts: vec![],
         passes: vec![],
@@ -165,11 +171,13 @@ impl Smooth<'_> {
     /// Adds the contours of surfaces that are known by their facets alone, and tells of each link whether it is within one.
     fn trace_bent(&mut self, links: &[Link]) -> Vec<bool> {
         let (normals, tolerance) = (&self.patches.normals, self.model.bound / CHORD);
-        let bent = bent_faces(self.mesh, links, normals, tolerance);
+        let sizes: Vec<f64> = self.mesh.faces().map(|f| f.area_vector().length()).collect();
+        let known = (&normals[..], &sizes[..]);
+        let bent = bent_faces(self.mesh, links, known, tolerance);
         if !bent.contains(&true) {
             return vec![false; links.len()];
         }
-        self.steady = steady_normals(self.mesh, links, (normals, &bent), tolerance);
+        self.steady = steady_normals(self.mesh, links, known, &bent, tolerance);
         let is_inner = |link: &Link| {
             let bends = |f: u32| bent[f as usize];
             let whole = link.right != NONE && (bends(link.left) || bends(link.right));
@@ -186,6 +194,8 @@ impl Smooth<'_> {
             let of = (base, self.id);
             add_contours(self.model, self.mesh, of, (links, &inner), (&self.steady, &bent), beside);
         }
+        self.loose = loose_faces(links, &inner, &bent);
+        self.bent = bent;
         inner
     }
 
@@ -323,6 +333,8 @@ impl Smooth<'_> {
         } else {
             Kind::Sharp
         };
+        let is_bent = |f: u32| self.bent.get(f as usize).is_some_and(|b| *b);
+        let loose = is_bent(link.left) || is_bent(link.right);
         let nodes = self.refined(curve, ends);
         for pair in nodes.windows(2) {
             let [a, b] = [pair[0], pair[1]];
@@ -340,7 +352,7 @@ impl Smooth<'_> {
             }
             if drawn || left != right && link.right != NONE && !self.within {
                 let back = !left && !right;
-                self.model.edges.push(Edge { a, b, kind, id: self.id, curve, back });
+                self.model.edges.push(Edge { a, b, kind, id: self.id, curve, back, loose });
             }
         }
     }
@@ -423,7 +435,8 @@ impl Smooth<'_> {
             self.model.sides[sides[0] as usize..sides[1] as usize].iter().map(|s| s[0]);
         let first = self.model.sides[sides[0] as usize][0];
         let corner = corners.find(|&c| !self.is_apex(patch, c)).unwrap_or(first);
-        Facet { plane, sides, min, max, field: self.field(patch), corner }
+        let loose = self.loose.get(face as usize).is_some_and(|loose| *loose);
+        Facet { plane, sides, min, max, field: self.field(patch), corner, loose }
     }
 
     /// The place in the model of the surface of a patch, or [`NONE`] if it is flat.
