@@ -9,6 +9,10 @@ use super::mesh::Origin;
 pub struct BoundaryTriangle {
     /// Point numbers, counter-clockwise seen from outside.
     pub corners: [u32; 3],
+    /// The tetrahedron it is a face of.
+    pub tetrahedron: u32,
+    /// Which corner of that is opposite.
+    pub opposite: u8,
     /// The face of the solid it is part of.
     pub face: u32,
     /// Its origin, a number of [`TetMesh::origins`].

@@ -1,9 +1,11 @@
 //! Solids as tetrahedra that know their neighbours.
 
+use std::sync::OnceLock;
+
 use rustc_hash::FxHashMap;
 use thiserror::Error;
 
-use crate::geom::{TetMesh, orient::orient3d};
+use crate::geom::{Bounds, TetMesh, bvh::Bvh, orient::orient3d};
 
 /// The corners of the face opposite to each corner of a tetrahedron, counter-clockwise seen from outside.
 pub const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
@@ -31,7 +33,9 @@ pub enum ComplexDefect {
         count: usize,
     },
     /// Two neighbours do not name each other.
-    #[error("tetrahedron {tetrahedron} and what is across its corner {corner} do not name each other")]
+    #[error(
+        "tetrahedron {tetrahedron} and what is across its corner {corner} do not name each other"
+    )]
     Astray {
         /// Which.
         tetrahedron: u32,
@@ -39,7 +43,9 @@ pub enum ComplexDefect {
         corner: u8,
     },
     /// A tetrahedron is turned inside out.
-    #[error("tetrahedron {tetrahedron} has a negative volume; it needs a positive one, or exactly none")]
+    #[error(
+        "tetrahedron {tetrahedron} has a negative volume; it needs a positive one, or exactly none"
+    )]
     Inverted {
         /// Which.
         tetrahedron: u32,
@@ -47,16 +53,17 @@ pub enum ComplexDefect {
 }
 
 /// A solid as tetrahedra whose faces are matched with a neighbour's or lie on the boundary. Lengths in mm.
-#[derive(Clone, PartialEq, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Complex {
     mesh: TetMesh,
     across: Vec<[Across; 4]>,
+    hierarchy: OnceLock<Bvh>,
 }
 
 impl Complex {
     /// A complex of a mesh and what is across the face opposite to each corner of each tetrahedron.
     pub(super) fn new(mesh: TetMesh, across: Vec<[Across; 4]>) -> Complex {
-        Complex { mesh, across }
+        Complex { mesh, across, hierarchy: OnceLock::new() }
     }
 
     /// What it was made of.
@@ -74,7 +81,15 @@ impl Complex {
         self.across[tetrahedron as usize][corner]
     }
 
-    /// Twice three times the volume with its exact sign: 0 for a flat tetrahedron.
+    /// A hierarchy of the boxes of the tetrahedra, made when it is asked for first.
+    pub(super) fn hierarchy(&self) -> &Bvh {
+        self.hierarchy.get_or_init(|| {
+            let boxes = (0..self.mesh.tetrahedra.len()).map(|t| Bounds::of(self.mesh.corners(t)));
+            Bvh::new(&boxes.collect::<Vec<_>>())
+        })
+    }
+
+    /// Six times the volume, rounded, with its exact sign: 0 for a flat tetrahedron.
     pub(super) fn sign_of(&self, tetrahedron: usize) -> f64 {
         let [a, b, c, d] = self.mesh.corners(tetrahedron);
         -orient3d(a, b, c, d)
@@ -121,7 +136,8 @@ impl Complex {
             let face = self.face(tetrahedron, corner);
             let agrees = match self.across(tetrahedron, corner) {
                 Across::Tetrahedron(there, opposite) => {
-                    self.across(there, opposite.into()) == Across::Tetrahedron(tetrahedron, corner as u8)
+                    self.across(there, opposite.into())
+                        == Across::Tetrahedron(tetrahedron, corner as u8)
                         && same_triangle(face, self.face(there, opposite.into()))
                 }
                 Across::Outside(number) => {

@@ -1,7 +1,7 @@
 //! Exact signs on a lattice of integer-valued floats: the side of a plane, the side of a sphere.
 //!
-//! Coordinates stay within 2^47 of the lattice centre, so that differences of 49 bits are exact as floats; what
-//! a float filter leaves open is decided by integers on the stack (252 bits at most). Five points on one sphere
+//! Coordinates stay within 2^51 of the lattice centre, so that differences of 53 bits are exact as floats; what
+//! a float filter leaves open is decided by integers on the stack (276 bits at most). Five points on one sphere
 //! are told apart by symbolic perturbation: the point of lower number is lifted by infinitely more, which makes
 //! the Delaunay tetrahedralisation unique and free of flat tetrahedra.
 //!
@@ -76,10 +76,12 @@ fn exact_in_sphere(
     point: u32,
 ) -> bool {
     let minors = others.each_ref().map(exact_determinant);
-    let lift = |row: &DVec3| row.to_array().iter().map(|&c| (c as i64 as i128).pow(2)).sum::<i128>();
-    let sum = rows.iter().zip(&minors).fold(Wide::<4>::ZERO, |sum, (row, minor)| {
-        sum + Wide::from(lift(row)) * minor.resize()
-    });
+    let lift =
+        |row: &DVec3| row.to_array().iter().map(|&c| (c as i64 as i128).pow(2)).sum::<i128>();
+    let sum = rows
+        .iter()
+        .zip(&minors)
+        .fold(Wide::<5>::ZERO, |sum, (row, minor)| sum + Wide::from(lift(row)) * minor.resize());
     match sum.sign() {
         0 => perturbed(numbers, minors.map(Wide::sign), point),
         sign => sign > 0,
@@ -102,7 +104,7 @@ mod tests {
 
     use super::*;
 
-    const UNIT: f64 = (1u64 << 46) as f64;
+    const UNIT: f64 = (1u64 << 50) as f64;
 
     #[test]
     fn signs_of_a_corner() {

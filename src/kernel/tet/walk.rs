@@ -4,12 +4,10 @@
 //! remembers where it came from. Where it meets the boundary before the point, the point may still be inside
 //! behind a hollow; then a bounding hierarchy answers.
 
-use std::sync::OnceLock;
-
 use glam::DVec3;
 
 use super::complex::{Across, Complex};
-use crate::geom::{Bounds, bvh::Bvh, orient::orient3d};
+use crate::geom::{Bounds, orient::orient3d};
 
 /// Steps after which a walk is given up: one in a mesh that is not Delaunay might go around.
 const STEPS: usize = 10_000;
@@ -19,13 +17,12 @@ const STEPS: usize = 10_000;
 pub struct Walk<'a> {
     complex: &'a Complex,
     last: u32,
-    hierarchy: OnceLock<Bvh>,
 }
 
 impl<'a> Walk<'a> {
     /// A walk that starts anywhere.
     pub fn new(complex: &'a Complex) -> Walk<'a> {
-        Walk { complex, last: 0, hierarchy: OnceLock::new() }
+        Walk { complex, last: 0 }
     }
 
     /// A tetrahedron that holds a point (mm), its boundary counted in; `None` outside. Exact.
@@ -41,7 +38,8 @@ impl<'a> Walk<'a> {
     fn walk(&self, point: DVec3) -> Option<u32> {
         let (mut here, mut from) = (self.last, 4);
         for _ in 0..STEPS {
-            let beyond = (0..4).find(|&corner| corner != from && self.is_beyond(here, corner, point));
+            let beyond =
+                (0..4).find(|&corner| corner != from && self.is_beyond(here, corner, point));
             let Some(corner) = beyond else { return self.holds(here, point).then_some(here) };
             match self.complex.across(here, corner) {
                 Across::Tetrahedron(there, opposite) => (here, from) = (there, opposite.into()),
@@ -65,13 +63,7 @@ impl<'a> Walk<'a> {
     }
 
     fn search(&self, point: DVec3) -> Option<u32> {
-        let mesh = self.complex.mesh();
-        let hierarchy = self.hierarchy.get_or_init(|| {
-            let boxes: Vec<Bounds> =
-                (0..mesh.tetrahedra.len()).map(|t| Bounds::of(mesh.corners(t))).collect();
-            Bvh::new(&boxes)
-        });
-        let near = hierarchy.overlapping(&Bounds::of([point]));
+        let near = self.complex.hierarchy().overlapping(&Bounds::of([point]));
         near.into_iter().find(|&t| self.holds(t, point))
     }
 }

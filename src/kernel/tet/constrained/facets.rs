@@ -3,6 +3,7 @@
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
+use super::touching::Touching;
 use super::{Work, sorted};
 use crate::{
     geom::{PolyMesh, triangulate::triangulate_face},
@@ -37,12 +38,28 @@ pub(super) fn of_mesh(mesh: &PolyMesh, numbers: &[u32], points: &[DVec3]) -> Vec
     let mut facets = vec![];
     for face in mesh.faces() {
         let number = face.index() as u32;
-        let loops: Vec<Vec<u32>> =
-            face.loops().map(|corners| corners.iter().map(|&c| numbers[c as usize]).collect()).collect();
+        let loops: Vec<Vec<u32>> = face
+            .loops()
+            .map(|corners| welded_loop(corners.iter().map(|&c| numbers[c as usize])))
+            .filter(|corners| corners.len() > 2)
+            .collect();
+        if loops.is_empty() {
+            continue;
+        }
         let plane = is_plane(&loops, points);
         facets.push(Facet { face: number, loops, triangles: vec![], plane });
     }
     facets
+}
+
+/// A loop in which no corner follows itself.
+fn welded_loop(corners: impl Iterator<Item = u32>) -> Vec<u32> {
+    let mut corners: Vec<u32> = corners.collect();
+    corners.dedup();
+    while corners.len() > 1 && corners.first() == corners.last() {
+        corners.pop();
+    }
+    corners
 }
 
 /// The triangles of a polygon.
@@ -66,7 +83,8 @@ fn is_plane(loops: &[Vec<u32>], points: &[DVec3]) -> bool {
 /// Three corners of the outer loop that are not on one line.
 fn spanning(loops: &[Vec<u32>], points: &[DVec3]) -> Option<[u32; 3]> {
     let outer = &loops[0];
-    let [a, b] = [outer[0], *outer.iter().find(|&&b| points[b as usize] != points[outer[0] as usize])?];
+    let [a, b] =
+        [outer[0], *outer.iter().find(|&&b| points[b as usize] != points[outer[0] as usize])?];
     outer.iter().map(|&c| [a, b, c]).find(|&t| has_area(t, points))
 }
 
@@ -97,11 +115,12 @@ impl Work {
     /// ties are broken as they are in space, so that what the tetrahedra have is found again.
     pub(super) fn triangulate_facets(&mut self) {
         let mut facets = std::mem::take(&mut self.facets);
-        facets.iter_mut().for_each(|facet| self.triangulate(facet));
+        let points = Touching::new(&self.delaunay.points);
+        facets.iter_mut().for_each(|facet| self.triangulate(facet, &points));
         self.facets = facets;
     }
 
-    fn triangulate(&self, facet: &mut Facet) {
+    fn triangulate(&self, facet: &mut Facet, touching: &Touching) {
         for corners in &mut facet.loops {
             *corners = self.split_loop(corners);
         }
@@ -110,6 +129,9 @@ impl Work {
             loops => triangles_of(loops, &self.delaunay.points),
         };
         facet.triangles.retain(|&t| has_area(t, &self.delaunay.points));
+        if facet.plane {
+            touching.insert(&self.delaunay.points, &mut facet.triangles);
+        }
         flip(&mut facet.triangles, |a, b, c, d| self.wants_flip(a, b, c, d));
     }
 
@@ -119,10 +141,16 @@ impl Work {
         let facets = std::mem::take(&mut self.facets);
         let (plane, bent): (Vec<Facet>, Vec<Facet>) = facets.into_iter().partition(|f| f.plane);
         self.facets = plane;
+        let points = Touching::new(&self.delaunay.points);
         for mut facet in bent.iter().cloned() {
-            self.triangulate(&mut facet);
+            self.triangulate(&mut facet, &points);
             flip(&mut facet.triangles, |a, b, c, d| self.prefers(a, b, c, d));
-            let triangle = |t: [u32; 3]| Facet { loops: vec![t.to_vec()], triangles: vec![], plane: true, ..facet };
+            let triangle = |t: [u32; 3]| Facet {
+                loops: vec![t.to_vec()],
+                triangles: vec![],
+                plane: true,
+                ..facet
+            };
             self.facets.extend(facet.triangles.iter().map(|&t| triangle(t)));
         }
         !bent.is_empty()
@@ -175,9 +203,16 @@ fn flip(triangles: &mut [[u32; 3]], mut wants: impl FnMut(u32, u32, u32, u32) ->
     // Each flip lowers the lifted surface, so there are at most as many as pairs of corners.
     let mut left = triangles.len() * triangles.len() + 64;
     while let Some([a, b]) = open.pop() {
-        let (Some(&first), Some(&second)) = (owner.get(&[a, b]), owner.get(&[b, a])) else { continue };
+        let (Some(&first), Some(&second)) = (owner.get(&[a, b]), owner.get(&[b, a])) else {
+            continue;
+        };
         let (c, d) = (third(triangles[first], a, b), third(triangles[second], a, b));
-        if left == 0 || c == d || owner.contains_key(&[c, d]) || owner.contains_key(&[d, c]) || !wants(a, b, c, d) {
+        if left == 0
+            || c == d
+            || owner.contains_key(&[c, d])
+            || owner.contains_key(&[d, c])
+            || !wants(a, b, c, d)
+        {
             continue;
         }
         left -= 1;

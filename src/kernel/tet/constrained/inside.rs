@@ -36,7 +36,14 @@ impl Work {
                 let corners = self.delaunay.face(here);
                 let face = boundary[&sorted(corners)][0].0;
                 let origin = solid.face(face as usize).origin_index();
-                mesh.boundary.push(BoundaryTriangle { corners, face, origin });
+                let (tetrahedron, opposite) = (number[t as usize], corner as u8);
+                mesh.boundary.push(BoundaryTriangle {
+                    corners,
+                    tetrahedron,
+                    opposite,
+                    face,
+                    origin,
+                });
                 Across::Outside(mesh.boundary.len() as u32 - 1)
             }));
         }
@@ -60,7 +67,8 @@ impl Work {
     /// How often the boundary winds around each tetrahedron: once inside, not at all outside.
     fn windings(&self, boundary: &Boundary) -> Result<Vec<i32>, NoTetrahedra> {
         let mut winding = vec![i32::MIN; self.delaunay.len()];
-        let mut open: Vec<u32> = self.delaunay.tetrahedra().filter(|&t| self.delaunay.is_ghost(t)).collect();
+        let mut open: Vec<u32> =
+            self.delaunay.tetrahedra().filter(|&t| self.delaunay.is_ghost(t)).collect();
         open.iter().for_each(|&t| winding[t as usize] = 0);
         while let Some(here) = open.pop() {
             for corner in 0..4 {

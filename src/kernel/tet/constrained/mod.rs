@@ -6,7 +6,7 @@
 //! [`wrap`]); once all edges are there, this needs no more points. What is outside is dropped at last
 //! ([`inside`]).
 //!
-//! Everything is decided by exact signs on a lattice to which corners are rounded first (2^-29 of the size of the
+//! Everything is decided by exact signs on a lattice to which corners are rounded first (2^-27 of the size of the
 //! model); new points are at dyadic places on edges, exactly.
 //!
 //! Sources: J. R. Shewchuk, *Constrained Delaunay Tetrahedralizations and Provably Good Boundary Recovery*, 2002
@@ -18,6 +18,7 @@ mod facets;
 mod inside;
 mod recover;
 mod segments;
+mod touching;
 mod wrap;
 
 use glam::DVec3;
@@ -35,14 +36,6 @@ pub enum NoTetrahedra {
     Flat {
         /// How many.
         corners: usize,
-    },
-    /// Corners fall together on the lattice.
-    #[error("two corners at {place} are closer than {step} mm, the finest this model is resolved to")]
-    Close {
-        /// Where, mm.
-        place: DVec3,
-        /// The step of the lattice in mm.
-        step: f64,
     },
     /// Two parts of the boundary meet where they share no corner.
     #[error("the boundary crosses itself near {place}; tetrahedra need one that does not")]
@@ -77,7 +70,7 @@ const NEW_POINTS: usize = 20;
 /// Fills a closed polyhedron with tetrahedra. Its corners are kept, its edges may get points between.
 ///
 /// # Errors
-/// When the boundary spans no volume, is open, crosses itself, or has corners closer than the lattice's step.
+/// When the boundary spans no volume, is open or crosses itself, or has edges that nearly touch.
 ///
 /// ```
 /// use glam::DVec3;
@@ -115,7 +108,7 @@ impl Work {
     /// Rounds the corners and makes the Delaunay tetrahedralisation of them.
     fn begin(boundary: &PolyMesh) -> Result<Work, NoTetrahedra> {
         let lattice = Lattice::around(Bounds::of(boundary.points.iter().copied()));
-        let (numbers, places) = welded(boundary, &lattice)?;
+        let (numbers, places) = welded(boundary, &lattice);
         let points: Vec<DVec3> = places.iter().map(|&place| lattice.point(place)).collect();
         let facets = facets::of_mesh(boundary, &numbers, &points);
         let corners = points.len();
@@ -132,22 +125,19 @@ impl Work {
     }
 }
 
-/// The number of each point of a mesh where equal ones are one, and their places.
-fn welded(mesh: &PolyMesh, lattice: &Lattice) -> Result<(Vec<u32>, Vec<DVec3>), NoTetrahedra> {
+/// The number of each point of a mesh where those that fall together on the lattice are one, and their places.
+fn welded(mesh: &PolyMesh, lattice: &Lattice) -> (Vec<u32>, Vec<DVec3>) {
     let mut known: FxHashMap<[i64; 3], u32> = FxHashMap::default();
     let mut places = vec![];
-    let mut numbers = Vec::with_capacity(mesh.points.len());
-    for &place in &mesh.points {
+    let number = |&place: &DVec3| {
         let key = lattice.point(place).to_array().map(|c| c as i64);
-        let number = *known.entry(key).or_insert(places.len() as u32);
-        if number as usize == places.len() {
+        *known.entry(key).or_insert_with(|| {
             places.push(place);
-        } else if places[number as usize] != place {
-            return Err(NoTetrahedra::Close { place, step: lattice.step() });
-        }
-        numbers.push(number);
-    }
-    Ok((numbers, places))
+            places.len() as u32 - 1
+        })
+    };
+    let numbers = mesh.points.iter().map(number).collect();
+    (numbers, places)
 }
 
 /// An edge or a triangle whatever its direction.

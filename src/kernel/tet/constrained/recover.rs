@@ -11,7 +11,8 @@ type Wanted = FxHashSet<[u32; 3]>;
 impl Work {
     /// Makes every triangle of every facet a face of tetrahedra. All edges must be there.
     pub(super) fn recover_facets(&mut self) -> Result<(), NoTetrahedra> {
-        let wanted: Wanted = self.facets.iter().flat_map(|f| f.triangles.iter().map(|&t| sorted(t))).collect();
+        let wanted: Wanted =
+            self.facets.iter().flat_map(|f| f.triangles.iter().map(|&t| sorted(t))).collect();
         for number in 0..self.facets.len() {
             let triangles = self.facets[number].triangles.clone();
             let missing: Vec<[u32; 3]> =
@@ -129,7 +130,10 @@ fn crossing_edges(delaunay: &Delaunay, plane: [u32; 3], tetrahedron: u32) -> Vec
     let corners = delaunay.corners(tetrahedron);
     let heights = corners.map(|c| height(delaunay, plane, c));
     let pairs = (0..4).flat_map(|i| (0..i).map(move |j| (i, j)));
-    pairs.filter(|&(i, j)| heights[i] * heights[j] < 0).map(|(i, j)| [corners[i], corners[j]]).collect()
+    pairs
+        .filter(|&(i, j)| heights[i] * heights[j] < 0)
+        .map(|(i, j)| [corners[i], corners[j]])
+        .collect()
 }
 
 /// A tetrahedron and an edge of it that crosses a triangle of the region.

@@ -40,7 +40,8 @@ impl Work {
 
     /// The edges of all facets, each once.
     fn segments(&self) -> Vec<[u32; 2]> {
-        let mut segments: Vec<[u32; 2]> = self.facets.iter().flat_map(|f| f.edges()).map(sorted).collect();
+        let mut segments: Vec<[u32; 2]> =
+            self.facets.iter().flat_map(|f| f.edges()).map(sorted).collect();
         segments.sort_unstable();
         segments.dedup();
         segments.retain(|[a, b]| a != b);
@@ -50,7 +51,8 @@ impl Work {
     /// The corners at which two edges make a sharp angle.
     fn acute_corners(&self, segments: &[[u32; 2]]) -> FxHashSet<u32> {
         let points = &self.delaunay.points;
-        let mut ends: Vec<[u32; 2]> = segments.iter().flat_map(|&[a, b]| [[a, b], [b, a]]).collect();
+        let mut ends: Vec<[u32; 2]> =
+            segments.iter().flat_map(|&[a, b]| [[a, b], [b, a]]).collect();
         ends.sort_unstable();
         let sharp = |group: &[[u32; 2]]| {
             let directions: Vec<DVec3> = group
@@ -61,7 +63,10 @@ impl Work {
             // At a corner of very many edges two are sharp without asking.
             directions.len() > 24 || directions.iter().enumerate().any(pair)
         };
-        ends.chunk_by(|x, y| x[0] == y[0]).filter(|group| sharp(group)).map(|group| group[0][0]).collect()
+        ends.chunk_by(|x, y| x[0] == y[0])
+            .filter(|group| sharp(group))
+            .map(|group| group[0][0])
+            .collect()
     }
 
     /// Splits an edge at a corner that lies on it, or at a new point.

@@ -18,7 +18,11 @@ pub(super) struct Wrap<'a> {
 
 impl<'a> Wrap<'a> {
     /// A cavity between faces, counter-clockwise seen from inside.
-    pub(super) fn new(delaunay: &'a Delaunay, fronts: Vec<[u32; 3]>, corners: Vec<u32>) -> Wrap<'a> {
+    pub(super) fn new(
+        delaunay: &'a Delaunay,
+        fronts: Vec<[u32; 3]>,
+        corners: Vec<u32>,
+    ) -> Wrap<'a> {
         let queue: Vec<[u32; 3]> = fronts.into_iter().map(turned).collect();
         Wrap { delaunay, corners, open: queue.iter().copied().collect(), queue }
     }
@@ -78,7 +82,9 @@ impl<'a> Wrap<'a> {
             reach.is_apart(&Reach::of(self.delaunay, front)) || {
                 let borders = [[front[0], front[1]], [front[1], front[2]], [front[2], front[0]]];
                 !edges.iter().any(|&edge| self.pierces(edge, *front))
-                    && !sides.iter().any(|&side| borders.iter().any(|&edge| self.pierces(edge, side)))
+                    && !sides
+                        .iter()
+                        .any(|&side| borders.iter().any(|&edge| self.pierces(edge, side)))
             }
         })
     }

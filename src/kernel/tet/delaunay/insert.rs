@@ -18,7 +18,8 @@ impl Delaunay {
             self.join(side(inner, corner), side(ghost, 3));
             for (other, &second) in outer.iter().enumerate().skip(corner + 1) {
                 // Two outer ones share the edge of the corners opposite to neither.
-                let (mine, theirs) = (self.place_of(ghost, first[other]), self.place_of(second, first[corner]));
+                let (mine, theirs) =
+                    (self.place_of(ghost, first[other]), self.place_of(second, first[corner]));
                 self.join(side(ghost, mine), side(second, theirs));
             }
         }

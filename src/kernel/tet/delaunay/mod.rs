@@ -81,7 +81,8 @@ impl Delaunay {
     pub(super) fn new(points: Vec<DVec3>) -> Option<Delaunay> {
         let order = order::hilbert(&points);
         let first = order::spanning(&points, &order)?;
-        let mut delaunay = Delaunay { at: vec![NOTHING; points.len()], points, ..Delaunay::default() };
+        let mut delaunay =
+            Delaunay { at: vec![NOTHING; points.len()], points, ..Delaunay::default() };
         delaunay.begin(first);
         for point in order.into_iter().filter(|i| !first.contains(i)) {
             delaunay.insert(point);

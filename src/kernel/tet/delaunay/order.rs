@@ -43,11 +43,13 @@ fn along_curve(mut cell: [u32; 3]) -> u64 {
     }
     cell[1] ^= cell[0];
     cell[2] ^= cell[1];
-    let flip = (0..BITS - 1).rev().fold(0, |flip, k| flip ^ if cell[2] >> (k + 1) & 1 == 1 { (1 << (k + 1)) - 1 } else { 0 });
+    let flip = (0..BITS - 1)
+        .rev()
+        .fold(0, |flip, k| flip ^ if cell[2] >> (k + 1) & 1 == 1 { (1 << (k + 1)) - 1 } else { 0 });
     let cell = cell.map(|c| c ^ flip);
-    (0..BITS).rev().fold(0, |key, k| {
-        cell.iter().fold(key, |key, c| key << 1 | u64::from(c >> k & 1))
-    })
+    (0..BITS)
+        .rev()
+        .fold(0, |key, k| cell.iter().fold(key, |key, c| key << 1 | u64::from(c >> k & 1)))
 }
 
 /// The first four points in an order that span a volume; `None` when all lie in one plane.

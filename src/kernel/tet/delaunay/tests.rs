@@ -77,6 +77,9 @@ fn stars_and_edges_are_closed() {
         let other = corners.into_iter().find(|&c| c != 17).expect("another");
         let around = delaunay.around(t, [17, other]);
         assert!(around.len() >= 3 && around.iter().all(|t| star.contains(t)));
-        assert_eq!(around.len(), star.iter().filter(|&&t| delaunay.corners(t).contains(&other)).count());
+        assert_eq!(
+            around.len(),
+            star.iter().filter(|&&t| delaunay.corners(t).contains(&other)).count()
+        );
     }
 }
