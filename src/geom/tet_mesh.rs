@@ -49,7 +49,16 @@ impl TetMesh {
 
     /// The volume of a tetrahedron in mm^3, rounded.
     pub fn volume_of(&self, tetrahedron: usize) -> f64 {
+        self.sixfold_volume_of(tetrahedron) / 6.0
+    }
+
+    /// The volume of all tetrahedra in mm^3; without rounding where coordinates are small integers.
+    pub fn volume(&self) -> f64 {
+        (0..self.tetrahedra.len()).map(|t| self.sixfold_volume_of(t)).sum::<f64>() / 6.0
+    }
+
+    fn sixfold_volume_of(&self, tetrahedron: usize) -> f64 {
         let [a, b, c, d] = self.corners(tetrahedron);
-        (b - a).cross(c - a).dot(d - a) / 6.0
+        (b - a).cross(c - a).dot(d - a)
     }
 }

@@ -7,7 +7,7 @@ use super::complex::Complex;
 impl Complex {
     /// Volume in mm^3.
     pub fn volume(&self) -> f64 {
-        (0..self.mesh().tetrahedra.len()).map(|t| self.mesh().volume_of(t)).sum()
+        self.mesh().volume()
     }
 
     /// Centre of gravity in mm; the origin for an empty solid.

@@ -145,3 +145,6 @@ fn sorted<const N: usize>(mut corners: [u32; N]) -> [u32; N] {
     corners.sort_unstable();
     corners
 }
+
+#[cfg(test)]
+mod tests;

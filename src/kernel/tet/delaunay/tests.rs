@@ -35,7 +35,7 @@ fn check(delaunay: &Delaunay) -> f64 {
         let [a, b, c, d] = corners;
         assert_eq!(delaunay.sign([a, b, c], d), 1);
         let p = corners.map(|i| delaunay.points[i as usize]);
-        volume += (p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]) / 6.0;
+        volume += (p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]);
         for corner in 0..4 {
             let there = delaunay.across(side(t, corner));
             let (beyond, opposite) = of_side(there);
@@ -43,7 +43,7 @@ fn check(delaunay: &Delaunay) -> f64 {
             assert!(apex == GHOST || !delaunay.in_sphere(corners, apex));
         }
     }
-    volume
+    volume / 6.0
 }
 
 #[test]
