@@ -62,7 +62,7 @@
 //! | [`shape`] | the graph of construction steps |
 //! | [`eval`] | names, values, dimensions, calls; binds `stdlib/` to the graph |
 //! | [`input`] | readers of meshes, drawings and values |
-//! | [`kernel`] | exact polyhedra ([`kernel::brep`]), plane figures ([`kernel::profile`]) and distance fields ([`kernel::field`]) |
+//! | [`kernel`] | exact polyhedra ([`kernel::brep`]), plane figures ([`kernel::profile`]), distance fields ([`kernel::field`]) and tetrahedra ([`kernel::tet`]) |
 //! | [`convert`] | offsets and fillets of polyhedra, held against their distance fields; solids of level sets |
 //! | [`realize`] | graph to solids |
 //! | [`output`] | writers of mesh files and OpenSCAD source, drawings ([`output::drawing`]), the sheets they stand on ([`output::sheet`]), half-tones ([`output::halftone`]) |
@@ -75,6 +75,7 @@
 //! |---|---|
 //! | S. Nagashima, *A spatial inclusion test for polyhedra using a spherical projection*, 1986 | [`geom::spherical_projection`], and the seeds of [`kernel::brep::boolean`] |
 //! | S. Tatehara, N. Tanaka, S. Tatsumi, K. Tokumasu, *Object-oriented expression for complex 3-D shapes* | [`kernel::field`], [`convert::offset`] |
+//! | Y. Arakawa, solids of tetrahedra with closed adjacency; H. Si, K. Gärtner, *3D boundary recovery by constrained Delaunay tetrahedralization*, 2011; L. Diazzi, D. Panozzo, A. Vaxman, M. Attene, *Constrained Delaunay Tetrahedrization*, 2023 | [`kernel::tet`] |
 //! | S. Nakajima, isometric input and surfaces from two rails (METHODS, section 4) | [`geom::curve`], [`kernel::brep::sweep`] |
 //! | W. Wang, B. Jüttler, D. Zheng, Y. Liu, *Computation of rotation minimizing frames*; S. A. Coons, *Surfaces for computer-aided design of space forms* | [`kernel::brep::sweep`] |
 //! | T. Ju, F. Losasso, S. Schaefer, J. Warren, *Dual contouring of hermite data*; S. Schaefer, T. Ju, J. Warren, *Manifold dual contouring*; T. Ju, T. Udeshi, *Intersection-free contouring on an octree grid* | [`kernel::field::contour`] |

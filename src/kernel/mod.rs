@@ -3,3 +3,4 @@
 pub mod brep;
 pub mod field;
 pub mod profile;
+pub mod tet;

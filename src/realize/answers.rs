@@ -4,9 +4,13 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::{Realizer, failure::failure, figure, import, measure, sweep};
+use super::{
+    Realizer,
+    failure::{Made, failure},
+    figure, import, measure, sweep,
+};
 use crate::{
-    base::{Code, Diagnostic, FileError},
+    base::{Code, Diagnostic, FileError, Phase, watch::during},
     geom::{
         CurvedGrid, Raster, Tolerance,
         isometric::{IsoDrawing, IsoScale},
@@ -16,10 +20,15 @@ use crate::{
     kernel::{
         brep::distance,
         field::{Field, Polyhedral},
+        tet::{
+            complex::Complex,
+            constrained::{NoTetrahedra, tetrahedralize},
+            walk::Walk,
+        },
     },
     shape::{
         Geometry, GeometryError, Kind, Measures, ShapeGraph, ShapeId, SweptSurface,
-        geometry::{Data, Imported, InsideMethod},
+        geometry::{Data, Imported, InsideMethod, TetrahedraCount},
         node::TextSpec,
     },
 };
@@ -50,8 +59,15 @@ impl Geometry for Realizer<'_> {
         point: DVec3,
         by: InsideMethod,
     ) -> Result<bool, GeometryError> {
-        if by == InsideMethod::Field {
-            return Ok(self.field(graph, shape)?.is_some_and(|field| field.holds(point)));
+        match by {
+            InsideMethod::Field => {
+                return Ok(self.field(graph, shape)?.is_some_and(|field| field.holds(point)));
+            }
+            InsideMethod::Tetrahedra => {
+                let complex = self.complex(graph, shape)?;
+                return Ok(Walk::new(&complex).locate(point).is_some());
+            }
+            InsideMethod::Sphere => {}
         }
         if let Some(boundary) = self.projections.get(&shape) {
             return Ok(boundary.inside(point));
@@ -70,6 +86,22 @@ impl Geometry for Realizer<'_> {
     ) -> Result<f64, GeometryError> {
         let solid = self.solid(graph, shape)?;
         Ok(solid_angle(solid.polyhedron.mesh(), point))
+    }
+
+    fn tetrahedra(
+        &self,
+        graph: &ShapeGraph,
+        shape: ShapeId,
+    ) -> Result<TetrahedraCount, GeometryError> {
+        let complex = self.complex(graph, shape)?;
+        let quality = complex.quality();
+        Ok(TetrahedraCount {
+            count: complex.mesh().tetrahedra.len(),
+            flat: complex.flat_count(),
+            smallest: quality.smallest,
+            largest: quality.largest,
+            histogram: quality.histogram.to_vec(),
+        })
     }
 
     fn distance_to_point(
@@ -148,6 +180,27 @@ impl Realizer<'_> {
         let field = Polyhedral::new(solid.polyhedron.mesh()).map(Arc::new);
         self.fields.extend(field.iter().map(|field| (shape, field.clone())));
         Ok(field)
+    }
+}
+
+impl Realizer<'_> {
+    /// The tetrahedra that fill a solid, made once.
+    ///
+    /// # Errors
+    /// When the solid cannot be made, or not be filled.
+    pub fn complex(&self, graph: &ShapeGraph, shape: ShapeId) -> Made<Arc<Complex>> {
+        if let Some(complex) = self.complexes.get(&shape) {
+            return Ok(complex);
+        }
+        let solid = self.solid(graph, shape)?;
+        let made = during(self.watch, Phase::Solids, || tetrahedralize(solid.polyhedron.mesh()));
+        let unfilled = |error: NoTetrahedra| {
+            let words = format!("this solid cannot be filled with tetrahedra: {error}");
+            failure(Diagnostic::error(Code::Degenerate, words))
+        };
+        let complex = Arc::new(made.map_err(unfilled)?);
+        self.complexes.extend([(shape, complex.clone())]);
+        Ok(complex)
     }
 }
 

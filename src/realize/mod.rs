@@ -49,6 +49,7 @@ use crate::{
     kernel::{
         brep::{Polyhedron, resolution::lost},
         field::Polyhedral,
+        tet::complex::Complex,
     },
     shape::{Kind, Measures, Node, ShapeGraph, ShapeId, Stretched},
 };
@@ -69,6 +70,7 @@ pub struct Realizer<'w> {
     /// Boundaries that were asked about, made ready for more questions.
     projections: Store<ShapeId, Arc<Projection>>,
     fields: Store<ShapeId, Arc<Polyhedral>>,
+    complexes: Store<ShapeId, Arc<Complex>>,
     /// What readers left out, by the node that asked.
     remarks: Mutex<BTreeMap<ShapeId, Diagnostic>>,
 }
@@ -87,6 +89,7 @@ impl<'w> Realizer<'w> {
             measures: Store::default(),
             projections: Store::default(),
             fields: Store::default(),
+            complexes: Store::default(),
             remarks: Mutex::default(),
         }
     }

@@ -11,6 +11,7 @@ use crate::{
     eval::Product,
     geom::{PolyMesh, Region},
     output::{
+        elements::{self, ElementFormat, NamedElements},
         halftone::PictureFormat,
         mesh::{self, MeshFormat, NamedMesh},
         scad,
@@ -25,6 +26,8 @@ use crate::{
 pub enum Format {
     /// A mesh.
     Mesh(MeshFormat),
+    /// Tetrahedra.
+    Elements(ElementFormat),
     /// OpenSCAD source.
     Scad,
     /// A drawing.
@@ -53,7 +56,8 @@ impl Format {
     }
 
     fn of_source(extension: &str) -> Option<Format> {
-        extension.eq_ignore_ascii_case("scad").then_some(Format::Scad)
+        let scad = extension.eq_ignore_ascii_case("scad").then_some(Format::Scad);
+        ElementFormat::from_name(extension).map(Format::Elements).or(scad)
     }
 
     /// What parts are written as when nobody says.
@@ -68,13 +72,14 @@ impl Format {
     /// All names, for messages.
     pub fn names() -> String {
         let names: Vec<&str> = MeshFormat::ALL.iter().map(|format| format.name()).collect();
-        format!("{}, scad, {}", names.join(", "), DRAWINGS)
+        format!("{}, {ELEMENTS}, scad, {DRAWINGS}", names.join(", "))
     }
 
     /// All extensions, for messages.
     pub fn extensions() -> String {
         let mut names: Vec<&str> = MeshFormat::ALL.iter().map(|f| f.extension()).collect();
         names.dedup();
+        names.extend(ElementFormat::ALL.map(ElementFormat::name));
         format!(".{}, .scad, .svg, .pdf, .dxf, .png or .txt", names.join(", ."))
     }
 
@@ -82,6 +87,7 @@ impl Format {
     pub fn extension(self) -> &'static str {
         match self {
             Format::Mesh(format) => format.extension(),
+            Format::Elements(format) => format.name(),
             Format::Scad => "scad",
             Format::Drawing(format) => format.name(),
             Format::Picture(format) => format.name(),
@@ -91,15 +97,20 @@ impl Format {
     /// Whether it holds what an output is.
     pub fn holds(self, product: &Product) -> bool {
         match product {
-            Product::Shape(_) => matches!(self, Format::Mesh(_) | Format::Scad),
+            Product::Shape(_) => self.is_solid(),
             Product::View(_) | Product::Sheet(_) => self.is_drawing(),
             // Pixels are no lines.
             Product::Shade(shade) => match self {
                 Format::Drawing(DrawingFormat::Dxf) => shade.screen != ScreenSpec::Grey,
                 Format::Drawing(_) | Format::Picture(_) => true,
-                Format::Mesh(_) | Format::Scad => false,
+                Format::Mesh(_) | Format::Elements(_) | Format::Scad => false,
             },
         }
+    }
+
+    /// Whether it holds solids.
+    pub fn is_solid(self) -> bool {
+        matches!(self, Format::Mesh(_) | Format::Elements(_) | Format::Scad)
     }
 
     /// Whether it holds lines, not solids.
@@ -110,11 +121,14 @@ impl Format {
     fn holds_parts(self) -> bool {
         match self {
             Format::Mesh(format) => format.holds_parts(),
-            Format::Scad => true,
+            Format::Scad | Format::Elements(_) => true,
             Format::Drawing(_) | Format::Picture(_) => false,
         }
     }
 }
+
+/// The names of the formats of tetrahedra, for messages.
+const ELEMENTS: &str = "msh, vtu, inp, mesh";
 
 /// The names of the formats of drawings, for messages.
 const DRAWINGS: &str = "svg, pdf, dxf, png or txt";
@@ -231,6 +245,7 @@ impl Artifact {
                     solids.iter().map(|(name, s)| NamedMesh { name, mesh: s.mesh() }).collect();
                 mesh::write(format, &meshes).map_err(|e| self.refused(&e.to_string()))
             }
+            Format::Elements(format) => self.encode_elements(format, realizer, graph),
             Format::Scad => {
                 let parts: Vec<_> = self.parts().iter().map(|p| (&*p.name, p.shape)).collect();
                 let realized = Shapes { realizer, graph };
@@ -242,6 +257,29 @@ impl Artifact {
                 Err(self.refused("a format of drawings and pictures holds no solids"))
             }
         }
+    }
+
+    fn encode_elements(
+        &self,
+        format: ElementFormat,
+        realizer: &Realizer,
+        graph: &ShapeGraph,
+    ) -> Result<Vec<u8>, Diagnostic> {
+        let mut complexes = vec![];
+        for part in self.parts() {
+            let complex = realizer.complex(graph, part.shape).map_err(|e| {
+                let diagnostic = *e.diagnostic;
+                if diagnostic.labels.is_empty() {
+                    diagnostic.label(part.span, "")
+                } else {
+                    diagnostic
+                }
+            })?;
+            complexes.push((&*part.name, complex));
+        }
+        let parts: Vec<NamedElements> =
+            complexes.iter().map(|(name, c)| NamedElements { name, mesh: c.mesh() }).collect();
+        elements::write(format, &parts).map_err(|e| self.refused(&e.to_string()))
     }
 
     fn encode_paper(

@@ -15,7 +15,7 @@ use crate::{
     realize,
     shape::{
         Geometry, GeometryError, Measures, ShapeGraph, ShapeId, SweptSurface,
-        geometry::{Imported, InsideMethod},
+        geometry::{Imported, InsideMethod, TetrahedraCount},
         node::TextSpec,
     },
     syntax,
@@ -84,6 +84,14 @@ impl Geometry for Session<'_> {
         point: DVec3,
     ) -> Result<f64, GeometryError> {
         self.realizer.solid_angle(graph, shape, point)
+    }
+
+    fn tetrahedra(
+        &self,
+        graph: &ShapeGraph,
+        shape: ShapeId,
+    ) -> Result<TetrahedraCount, GeometryError> {
+        Geometry::tetrahedra(&self.realizer, graph, shape)
     }
 
     fn distance_to_point(

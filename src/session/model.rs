@@ -263,9 +263,7 @@ impl<'s> Model<'s> {
             papers.retain(|paper| !written.contains(&paper.name));
         }
         diagnostics.extend(self.check(names));
-        let of_parts = format
-            .filter(|format| matches!(format, Format::Mesh(_) | Format::Scad))
-            .unwrap_or(Format::STL);
+        let of_parts = format.filter(|format| format.is_solid()).unwrap_or(Format::STL);
         let of_paper = format.filter(|format| format.is_drawing()).unwrap_or(Format::SVG);
         for part in parts {
             let file = format!("{}.{}", part.name, of_parts.extension());

@@ -92,6 +92,23 @@ pub enum InsideMethod {
     Sphere,
     /// The signed distance from the boundary (Tatehara et al.).
     Field,
+    /// A walk through tetrahedra (Arakawa).
+    Tetrahedra,
+}
+
+/// What tetrahedra a solid is filled with.
+#[derive(Clone, PartialEq, Debug)]
+pub struct TetrahedraCount {
+    /// How many.
+    pub count: usize,
+    /// How many of them have no volume.
+    pub flat: usize,
+    /// The smallest dihedral angle in degrees.
+    pub smallest: f64,
+    /// The largest.
+    pub largest: f64,
+    /// How many angles are in [0, 10), [10, 20) and so on up to [170, 180] degrees.
+    pub histogram: Vec<usize>,
 }
 
 /// Answers about shapes. `session` hands one in; `realize` implements it. Results are kept by node.
@@ -119,6 +136,13 @@ pub trait Geometry {
         shape: ShapeId,
         point: DVec3,
     ) -> Result<f64, GeometryError>;
+
+    /// The tetrahedra that fill a solid.
+    fn tetrahedra(
+        &self,
+        graph: &ShapeGraph,
+        shape: ShapeId,
+    ) -> Result<TetrahedraCount, GeometryError>;
 
     /// Distance in mm from a point to a solid, negative inside.
     fn distance_to_point(

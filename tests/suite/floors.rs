@@ -18,6 +18,7 @@ const FLOORS: &[(&str, &[&str])] = &[
     ("kernel/profile", &["geom"]),
     ("kernel/brep", &["geom"]),
     ("kernel/field", &["geom"]),
+    ("kernel/tet", &["geom"]),
     ("convert", &["geom", "kernel"]),
     ("realize", &["base", "geom", "shape", "input", "kernel", "convert"]),
     ("output", &["geom"]),

@@ -12,4 +12,4 @@ mod tiny;
 mod touching;
 mod wild;
 
-pub use random::Random;
+pub use random::{Random, style, tree};

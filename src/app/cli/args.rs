@@ -144,7 +144,9 @@ pub struct Build {
     pub output: PathBuf,
     /// Write each part as NAME.FORMAT in place of the exports
     #[arg(long, value_name = "FORMAT")]
-    #[arg(help = "Parts as stl, stl-ascii, obj, off, ply, 3mf, glb, scad; views as svg, pdf, dxf")]
+    #[arg(
+        help = "Parts as stl, stl-ascii, obj, off, ply, 3mf, glb, msh, vtu, inp, mesh, scad; views as svg, pdf, dxf"
+    )]
     pub format: Option<String>,
     /// How.
     #[command(flatten)]

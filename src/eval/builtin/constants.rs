@@ -16,6 +16,7 @@ pub const TABLE: &[(&str, Native)] = &[
     ("constant.winding", |_, _| Ok(Value::Symbol(Symbol::Winding))),
     ("constant.sphere", |_, _| Ok(Value::Symbol(Symbol::Sphere))),
     ("constant.field", |_, _| Ok(Value::Symbol(Symbol::Field))),
+    ("constant.tet", |_, _| Ok(Value::Symbol(Symbol::Tet))),
     ("constant.exact", |_, _| Ok(Value::Symbol(Symbol::Exact))),
     ("constant.quadtree", |_, _| Ok(Value::Symbol(Symbol::Quadtree))),
     ("constant.inverse", |_, _| Ok(Value::Symbol(Symbol::Inverse))),

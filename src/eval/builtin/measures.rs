@@ -28,6 +28,7 @@ pub const TABLE: &[(&str, Native)] = &[
     ("measure.inertia", inertia),
     ("measure.inside", inside),
     ("measure.solid_angle", solid_angle),
+    ("measure.tetrahedra", tetrahedra),
     ("measure.distance.points", distance_points),
     ("measure.distance.point", |e, a| distance_point(e, a, 0, 1)),
     ("measure.distance.to_point", |e, a| distance_point(e, a, 1, 0)),
@@ -81,8 +82,9 @@ fn inside(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
     let by = match args.symbol(2)? {
         Symbol::Sphere => InsideMethod::Sphere,
         Symbol::Field => InsideMethod::Field,
+        Symbol::Tet => InsideMethod::Tetrahedra,
         other => {
-            let words = format!("`by` is SPHERE or FIELD, got {other}");
+            let words = format!("`by` is SPHERE, FIELD or TET, got {other}");
             return args.fail(2, Code::OutOfRange, words);
         }
     };
@@ -93,6 +95,23 @@ fn inside(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
 fn solid_angle(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
     let (shape, point) = (args.shape(0)?, args.point(1)?);
     evaluator.ask(args.call, |host, graph| host.solid_angle(graph, shape, point)).map(Value::bare)
+}
+
+fn tetrahedra(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
+    let shape = args.shape(0)?;
+    let found = evaluator.ask(args.call, |host, graph| host.tetrahedra(graph, shape))?;
+    let count = |n: usize| Value::bare(n as f64);
+    let angle = |degrees: f64| number(degrees, Dimension::ANGLE);
+    let quality = Value::record(vec![
+        ("smallest".into(), angle(found.smallest)),
+        ("largest".into(), angle(found.largest)),
+        ("histogram".into(), Value::list(found.histogram.into_iter().map(count).collect())),
+    ]);
+    Ok(Value::record(vec![
+        ("count".into(), count(found.count)),
+        ("flat".into(), count(found.flat)),
+        ("quality".into(), quality),
+    ]))
 }
 
 fn distance_points(_: &mut Evaluator, args: &Args) -> Outcome<Value> {

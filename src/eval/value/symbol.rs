@@ -47,6 +47,8 @@ symbols! {
     Sphere = "SPHERE",
     /// The distance field.
     Field = "FIELD",
+    /// Tetrahedra.
+    Tet = "TET",
     /// The exact kernel.
     Exact = "EXACT",
     /// The spherical quadtree.

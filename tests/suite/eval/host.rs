@@ -12,7 +12,7 @@ use katachi::{
     },
     shape::{
         Geometry, GeometryError, Measures, Node, ShapeGraph, ShapeId, SweptSurface,
-        geometry::{Data, Imported, InsideMethod},
+        geometry::{Data, Imported, InsideMethod, TetrahedraCount},
         node::TextSpec,
     },
     syntax,
@@ -111,6 +111,11 @@ impl Geometry for Bench<'_> {
 
     fn solid_angle(&self, _: &ShapeGraph, _: ShapeId, _: DVec3) -> Result<f64, GeometryError> {
         Ok(4.0 * std::f64::consts::PI)
+    }
+
+    fn tetrahedra(&self, _: &ShapeGraph, _: ShapeId) -> Result<TetrahedraCount, GeometryError> {
+        let histogram = vec![0; 18];
+        Ok(TetrahedraCount { count: 6, flat: 0, smallest: 45.0, largest: 120.0, histogram })
     }
 
     fn distance_to_point(
