@@ -1,12 +1,9 @@
-//! Files are written whole or not at all: to a temporary file beside the target, then renamed. One that holds the
-//! same already only gets the date of now: file systems see to it that what takes the place of another file is on the
-//! disk, which takes longer than to look.
+//! Files are written whole or not at all: to a temporary file beside the target, then renamed.
 
 use std::{
-    fs::{self, File},
-    io::{self, Read, Write},
+    fs,
+    io::{self, Write},
     path::{Component, Path, PathBuf},
-    time::SystemTime,
 };
 
 use super::{disk::refusal, interrupt};
@@ -29,30 +26,8 @@ pub fn write_whole(folder: &Path, name: &str, bytes: &[u8]) -> Result<PathBuf, S
     if path.is_dir() {
         return Err(format!("`{}`: a folder stands there", path.display()));
     }
-    if !is_renewed(&path, bytes).unwrap_or(false) {
-        replace(parent, &path, bytes).map_err(words)?;
-    }
+    replace(parent, &path, bytes).map_err(words)?;
     Ok(path)
-}
-
-/// Whether a file holds these bytes already, and has the date of now.
-#[expect(clippy::disallowed_methods, reason = "the date of a file that would have been written")]
-fn is_renewed(path: &Path, bytes: &[u8]) -> io::Result<bool> {
-    let found = fs::symlink_metadata(path)?;
-    if !found.is_file() || found.len() != bytes.len() as u64 {
-        return Ok(false);
-    }
-    let mut file = File::open(path)?;
-    let mut piece = vec![0; bytes.len().min(PIECE)];
-    for expected in bytes.chunks(PIECE) {
-        let read = &mut piece[..expected.len()];
-        file.read_exact(read)?;
-        if read != expected {
-            return Ok(false);
-        }
-    }
-    file.set_modified(SystemTime::now())?;
-    Ok(true)
 }
 
 /// So many bytes are written between two questions whether to stop.
@@ -108,24 +83,6 @@ mod tests {
             assert_eq!(fs::read(path).expect("readable"), text.as_bytes());
         }
         assert_eq!(names(&folder.path().join("a")), ["b.stl"]);
-    }
-
-    #[test]
-    fn what_has_not_changed_gets_a_new_date() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let write =
-            |text: &str| write_whole(folder.path(), "a.stl", text.as_bytes()).expect("writes");
-        let path = write("one");
-        let other = folder.path().join("other.stl");
-        fs::hard_link(&path, &other).expect("a second name");
-        let old = SystemTime::UNIX_EPOCH;
-        File::open(&path).and_then(|file| file.set_modified(old)).expect("an old date");
-        let date = |path: &Path| fs::metadata(path).and_then(|m| m.modified()).expect("a date");
-        write("one");
-        assert!(date(&path) > old && date(&other) > old); // the same file
-        write("two");
-        assert_eq!(fs::read(&path).expect("readable"), b"two");
-        assert_eq!(fs::read(&other).expect("readable"), b"one");
     }
 
     #[test]
