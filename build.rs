@@ -1,10 +1,25 @@
 //! How the command is linked where the GNU linker's driver is known.
 //!
 //! Most runs of the command take a few milliseconds, and a good part of that is the system putting the program
-//! together. At a fixed address there is nothing to relocate, and with the unwinder inside there is one
-//! library less to find. Where the unwinder's archive is not found, the library is linked as usual.
+//! together. At a fixed address there is nothing to relocate, and with the libraries of the system inside there are
+//! none to find. Where their archives are not found, they are linked as usual.
 
-use std::{env, path::Path, process::Command};
+use std::{
+    env, fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+/// The libraries that the standard library asks for, and the archives that hold the same.
+const LIBRARIES: [(&str, &str); 7] = [
+    ("c", "c"),
+    ("m", "m"),
+    ("dl", "dl"),
+    ("rt", "rt"),
+    ("util", "util"),
+    ("pthread", "pthread"),
+    ("gcc_s", "gcc_eh"),
+];
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
@@ -14,12 +29,36 @@ fn main() {
         return;
     }
     println!("cargo:rustc-link-arg-bins=-no-pie");
-    let asked = Command::new("cc").arg("-print-file-name=libgcc_eh.a").output();
-    let answer = asked.map(|output| String::from_utf8_lossy(&output.stdout).trim().to_string());
-    // A name that is not found comes back without a folder.
-    let folder = answer.ok().and_then(|file| Some(Path::new(&file).parent()?.to_owned()));
-    if let Some(folder) = folder.filter(|folder| folder.is_absolute()) {
-        println!("cargo:rustc-link-search=native={}", folder.display());
-        println!("cargo:rustc-link-lib=static:-bundle=gcc_eh");
+    if let Some(folder) = archives() {
+        println!("cargo:rustc-link-arg-bins=-static");
+        println!("cargo:rustc-link-arg-bins=-L{}", folder.display());
     }
+}
+
+/// A folder where the linker finds the archives first, each by a script that names it; `None` if one is missing or a
+/// program of them cannot be linked.
+fn archives() -> Option<PathBuf> {
+    let folder = Path::new(&env::var_os("OUT_DIR")?).join("archives");
+    if folder.exists() {
+        fs::remove_dir_all(&folder).ok()?;
+    }
+    fs::create_dir(&folder).ok()?;
+    for (library, archive) in LIBRARIES {
+        let script = format!("INPUT(\"{}\")\n", found(archive)?);
+        fs::write(folder.join(format!("lib{library}.a")), script).ok()?;
+    }
+    let (source, program) = (folder.join("trial.c"), folder.join("trial"));
+    fs::write(&source, "int main(void) { return 0; }\n").ok()?;
+    let mut compiler = Command::new("cc");
+    let trial = compiler.args(["-static", "-no-pie", "-o"]).args([program, source]).output();
+    trial.is_ok_and(|output| output.status.success()).then_some(folder)
+}
+
+/// Where the compiler's driver finds an archive.
+fn found(archive: &str) -> Option<String> {
+    let name = format!("-print-file-name=lib{archive}.a");
+    let output = Command::new("cc").arg(name).output().ok()?;
+    let file = String::from_utf8(output.stdout).ok()?.trim().to_string();
+    // A name that is not found comes back without a folder.
+    Path::new(&file).is_absolute().then_some(file)
 }

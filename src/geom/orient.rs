@@ -1,6 +1,7 @@
 //! Exact orientation of float points, in the plane and in space.
 //!
-//! A float filter answers nearly always; what it leaves open is decided by floating-point expansions
+//! A float filter answers nearly always, in space one of twice the precision nearly all of the rest; what they leave
+//! open is decided by floating-point expansions
 //! (sums of non-overlapping floats, exact). Used by triangulation and the convex hull, whose points are
 //! free floats; set operations have lattice predicates of their own.
 //!
@@ -60,7 +61,7 @@ pub fn orient3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {
         return det;
     }
     // Without terms there is nothing to round: d is one of the others, mostly.
-    if permanent == 0.0 { 0.0 } else { exact_3d(a, b, c, d) }
+    if permanent == 0.0 { 0.0 } else { exact_3d(a, b, c, d, permanent) }
 }
 
 /// A sum of floats of growing size that do not overlap: an exact number. Zeros are left out.
@@ -158,8 +159,50 @@ fn exact_2d(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     det.estimate()
 }
 
+/// A number as the sum of two floats, the second below the last place of the first.
+#[derive(Clone, Copy)]
+struct Twice(f64, f64);
+
+impl Twice {
+    /// a - b, exactly.
+    fn difference(a: f64, b: f64) -> Twice {
+        let (high, low) = two_sum(a, -b);
+        Twice(high, low)
+    }
+
+    /// The product, up to 8 times 2^-106 of it.
+    fn times(self, other: Twice) -> Twice {
+        let (high, low) = two_product(self.0, other.0);
+        let (high, low) = two_sum(high, low + (self.0 * other.1 + self.1 * other.0));
+        Twice(high, low)
+    }
+
+    /// The sum, up to 4 times 2^-106 of both sizes.
+    fn plus(self, other: Twice) -> Twice {
+        let (high, low) = two_sum(self.0, other.0);
+        let (high, low) = two_sum(high, low + (self.1 + other.1));
+        Twice(high, low)
+    }
+
+    fn minus(self, other: Twice) -> Twice {
+        self.plus(Twice(-other.0, -other.1))
+    }
+}
+
+/// Two products in a row and four sums, each with an error of at most 8 times 2^-106 of the permanent, and ample room
+/// for what the permanent is wrong.
+const BOUND_TWICE: f64 = 1024.0 * EPSILON * EPSILON;
+
 #[cold]
-fn exact_3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {
+fn exact_3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3, permanent: f64) -> f64 {
+    let [p, q, r] = [a, b, c].map(|p| [0, 1, 2].map(|i| Twice::difference(p[i], d[i])));
+    let minor = |j: usize, k: usize| q[j].times(r[k]).minus(q[k].times(r[j]));
+    let [x, y, z] = [(0, 1, 2), (1, 2, 0), (2, 0, 1)].map(|(i, j, k)| p[i].times(minor(j, k)));
+    let det = x.plus(y).plus(z);
+    if det.0.abs() > BOUND_TWICE * permanent { det.0 } else { expanded_3d(a, b, c, d) }
+}
+
+fn expanded_3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {
     let rows = [a, b, c].map(|p| [0, 1, 2].map(|i| Expansion::<2>::difference(p[i], d[i])));
     let [p, q, r] = &rows;
     let mut det = Expansion::<192>::ZERO;
@@ -191,6 +234,13 @@ mod tests {
         i32::from(*x > RBig::ZERO) - i32::from(*x < RBig::ZERO)
     }
 
+    fn rational_3d([a, b, c, d]: [DVec3; 4]) -> RBig {
+        let rows = [a, b, c].map(|p| [0, 1, 2].map(|k| rational(p[k]) - rational(d[k])));
+        let [p, q, s] = &rows;
+        let minor = |j: usize, k: usize| q[j].clone() * &s[k] - q[k].clone() * &s[j];
+        p[0].clone() * minor(1, 2) + p[1].clone() * minor(2, 0) + p[2].clone() * minor(0, 1)
+    }
+
     #[test]
     fn the_plane_sign_is_that_of_rational_arithmetic() {
         for i in 0..400 {
@@ -211,13 +261,30 @@ mod tests {
             let d = dvec3(0.1 + step(i % 7), 0.3 + step(i / 7 % 7), 0.7 + step(i / 49));
             let (a, b) = (dvec3(0.2, 0.2, 0.7), dvec3(12.3, 0.4, 0.7));
             let c = dvec3(0.5, 17.9, 0.7 + step(i % 5));
-            let m = [a, b, c].map(|p| [0, 1, 2].map(|k| rational(p[k]) - rational(d[k])));
-            let [p, q, s] = &m;
-            let minor = |j: usize, k: usize| q[j].clone() * &s[k] - q[k].clone() * &s[j];
-            let exact = p[0].clone() * minor(1, 2)
-                + p[1].clone() * minor(2, 0)
-                + p[2].clone() * minor(0, 1);
+            let exact = rational_3d([a, b, c, d]);
             assert_eq!(sign(orient3d(a, b, c, d)), rational_sign(&exact));
+            assert_eq!(sign(expanded_3d(a, b, c, d)), rational_sign(&exact));
         }
+    }
+
+    /// Places in a plane that is not one of doubles, so that their heights are of the size of rounding or nothing.
+    #[test]
+    fn twice_the_precision_tells_the_sign_in_space() {
+        let mut certain = 0;
+        for i in 0..500u32 {
+            let share = |k: u32| f64::from((i * 7919 + k * 104_729) % 1000) / 999.0 - 0.5;
+            let on = |k: u32| {
+                let (u, v) = (share(k) * 30.0, share(k + 1) * 30.0);
+                dvec3(u, v, 0.3 * u - 0.7 * v)
+            };
+            let [a, b, c, d] = [on(0), on(2), on(4), if i % 5 == 0 { on(2) } else { on(6) }];
+            let exact = rational_3d([a, b, c, d]);
+            assert_eq!(sign(orient3d(a, b, c, d)), rational_sign(&exact));
+            let twice = exact_3d(a, b, c, d, 0.0);
+            let wrong = exact - rational(twice);
+            assert!(wrong < rational(1e-25) && wrong > rational(-1e-25), "{twice}");
+            certain += u32::from(twice.abs() > 1e-20);
+        }
+        assert!(certain > 250, "{certain}");
     }
 }

@@ -25,8 +25,11 @@ pub(super) fn wanted(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> bool {
 /// Flips inner edges of a face's triangles until all are near Delaunay. Makes no triangle that is not
 /// strictly counter-clockwise.
 pub(super) fn improve(face: &PlaneFace, triangles: &mut [[u32; 3]]) {
-    let mut edges = Edges { face, twin: twins(triangles), triangles };
-    let mut open: Vec<u32> = (0..edges.twin.len() as u32).rev().collect();
+    let mut edges = Edges { face, twin: twins(triangles, face.len()), triangles };
+    let count = edges.twin.len() as u32;
+    // Both ways along an edge are the same question, and a flip asks anew about all edges around it.
+    let is_first = |edge: &u32| (*edge..count).contains(&edges.twin[*edge as usize]);
+    let mut open: Vec<u32> = (0..count).rev().filter(is_first).collect();
     let mut left = FLIPS_PER_TRIANGLE * edges.triangles.len();
     while let Some(edge) = open.pop() {
         if left > 0 && edges.should_flip(edge) {
@@ -36,23 +39,43 @@ pub(super) fn improve(face: &PlaneFace, triangles: &mut [[u32; 3]]) {
     }
 }
 
-/// For each half-edge 3 t + k (corner k to corner k + 1 of triangle t) the one that runs back.
-fn twins(triangles: &[[u32; 3]]) -> Vec<u32> {
-    let ends = |t: &[u32; 3], k: usize| (t[k], t[(k + 1) % 3]);
-    let mut keyed: Vec<(u64, u32)> = Vec::with_capacity(3 * triangles.len());
-    for (i, t) in triangles.iter().enumerate() {
-        for k in 0..3 {
-            let (a, b) = ends(t, k);
-            keyed.push((u64::from(a.min(b)) << 32 | u64::from(a.max(b)), (3 * i + k) as u32));
-        }
-    }
-    keyed.sort_unstable();
+/// Faces with no more corners have a table of all pairs.
+const FEW: usize = 16;
+
+/// For each half-edge 3 t + k (corner k to corner k + 1 of triangle t) the only one that runs back, if it is the only
+/// one that runs forth.
+fn twins(triangles: &[[u32; 3]], corners: usize) -> Vec<u32> {
     let mut twin = vec![NONE; 3 * triangles.len()];
-    for pair in keyed.chunk_by(|a, b| a.0 == b.0) {
-        let &[(_, e), (_, f)] = pair else { continue };
-        let start = |h: u32| triangles[h as usize / 3][h as usize % 3];
+    let start = |h: u32| triangles[h as usize / 3][h as usize % 3];
+    let mut join = |e: u32, f: u32| {
         if start(e) != start(f) {
             (twin[e as usize], twin[f as usize]) = (f, e);
+        }
+    };
+    let sides = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let sides = (0u32..).zip(sides.map(|side| side.map(|corner| corner as usize)));
+    if corners <= FEW {
+        // One more than the half-edge, 0 for none, or the highest for several.
+        let mut table = [[0u8; FEW]; FEW];
+        for (h, [a, b]) in sides.clone() {
+            let place = &mut table[a][b];
+            *place = if *place == 0 { h as u8 + 1 } else { u8::MAX };
+        }
+        for (e, [a, b]) in sides.filter(|(_, [a, b])| a < b) {
+            let [forth, back] = [table[a][b], table[b][a]].map(u32::from);
+            if forth == e + 1 && back != 0 && back != u32::from(u8::MAX) {
+                join(e, back - 1);
+            }
+        }
+        return twin;
+    }
+    let key = |(h, [a, b]): (u32, [usize; 2])| ((a.min(b) as u64) << 32 | a.max(b) as u64, h);
+    let mut keyed: Vec<(u64, u32)> = Vec::with_capacity(3 * triangles.len());
+    keyed.extend(sides.map(key));
+    keyed.sort_unstable();
+    for pair in keyed.chunk_by(|a, b| a.0 == b.0) {
+        if let &[(_, e), (_, f)] = pair {
+            join(e, f);
         }
     }
     twin

@@ -110,6 +110,9 @@ fn quad(points: &[DVec3], corners: [u32; 4], normal: DVec3) -> Option<[[u32; 3];
     }
 }
 
+/// So many corners are compared with each other, more are sorted.
+const FEW: usize = 16;
+
 /// A face in its plane. Corners are numbered through all loops; a point that two loops share is two
 /// corners.
 #[derive(Clone)]
@@ -133,8 +136,8 @@ impl PlaneFace {
         let index: Vec<u32> = loops.concat();
         let space: Vec<DVec3> = index.iter().map(|&i| points[i as usize]).collect();
         let plane = space.iter().copied().map(projection(normal)).collect();
-        let mut face =
-            PlaneFace { plane, space, index, next: vec![], prev: vec![], starts: vec![0] };
+        let [next, prev] = [0; 2].map(|_| Vec::with_capacity(index.len()));
+        let mut face = PlaneFace { plane, space, index, next, prev, starts: vec![0] };
         for corners in loops {
             let (start, n) = (face.next.len() as u32, corners.len() as u32);
             face.next.extend((0..n).map(|i| start + (i + 1) % n));
@@ -159,9 +162,13 @@ impl PlaneFace {
     /// Corners at one place that are different points are joined too, unless that would lead from one to
     /// another.
     fn with_touching_loops_joined(&self) -> Option<PlaneFace> {
+        let is_apart = |i: usize| self.plane[..i].iter().all(|p| *p != self.plane[i]);
+        if self.len() <= FEW && (1..self.len()).all(is_apart) {
+            return None;
+        }
         let place = |a: u32, b: u32| {
             let [p, q] = [a, b].map(|c| self.plane[c as usize]);
-            p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y))
+            p.x.total_cmp(&q.x).then_with(|| p.y.total_cmp(&q.y))
         };
         let point = |a: u32, b: u32| self.index[a as usize].cmp(&self.index[b as usize]);
         let face = self.joined(place)?;

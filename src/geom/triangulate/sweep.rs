@@ -37,6 +37,9 @@ enum Event {
 
 const NONE: u32 = u32::MAX;
 
+/// Room for so many edges and intervals on the sweep line saves most faces from asking for more.
+const SOME: usize = 8;
+
 /// A corner in a chain.
 #[derive(Clone, Copy)]
 struct Link {
@@ -68,15 +71,16 @@ struct Sweep<'a> {
 
 /// The triangles over corner numbers; `None` when the face is not valid.
 pub(super) fn triangles(face: &PlaneFace) -> Option<Vec<[u32; 3]>> {
-    let mut order = (0..face.len() as u32)
-        .map(|corner| Some((face.plane[corner as usize], event(face, corner)?, corner)))
-        .collect::<Option<Vec<_>>>()?;
-    order.sort_unstable_by(|a, b| lexical(a.0, b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    let mut order = Vec::with_capacity(face.len());
+    for (corner, &place) in (0..).zip(&face.plane) {
+        order.push((place, event(face, corner)?, corner));
+    }
+    order.sort_unstable_by(|a, b| lexical(a.0, b.0).then_with(|| (a.1, a.2).cmp(&(b.1, b.2))));
     let mut sweep = Sweep {
         face,
-        status: vec![],
+        status: Vec::with_capacity(SOME),
         interval_of: vec![NONE; face.len()],
-        intervals: vec![],
+        intervals: Vec::with_capacity(SOME),
         links: Vec::with_capacity(2 * face.len()),
         triangles: Vec::with_capacity(face.len() + 2 * face.starts.len()),
     };
@@ -88,7 +92,7 @@ pub(super) fn triangles(face: &PlaneFace) -> Option<Vec<[u32; 3]>> {
 
 fn lexical(a: DVec2, b: DVec2) -> Ordering {
     let order = |p: f64, q: f64| p.partial_cmp(&q).unwrap_or(Ordering::Equal);
-    order(a.x, b.x).then(order(a.y, b.y))
+    order(a.x, b.x).then_with(|| order(a.y, b.y))
 }
 
 fn event(face: &PlaneFace, corner: u32) -> Option<Event> {
@@ -96,14 +100,14 @@ fn event(face: &PlaneFace, corner: u32) -> Option<Event> {
     let here = face.plane[corner as usize];
     let from = lexical(face.plane[prev as usize], here);
     let to = lexical(face.plane[next as usize], here);
-    let convex = face.turn(prev, corner, next) > 0.0;
+    let convex = || face.turn(prev, corner, next) > 0.0;
     match (from, to) {
         (Ordering::Equal, _) | (_, Ordering::Equal) => None,
         (Ordering::Less, Ordering::Greater) => Some(Event::Lower),
         (Ordering::Greater, Ordering::Less) => Some(Event::Upper),
-        (Ordering::Less, Ordering::Less) => Some(if convex { Event::End } else { Event::Merge }),
+        (Ordering::Less, Ordering::Less) => Some(if convex() { Event::End } else { Event::Merge }),
         (Ordering::Greater, Ordering::Greater) => {
-            Some(if convex { Event::Start } else { Event::Split })
+            Some(if convex() { Event::Start } else { Event::Split })
         }
     }
 }

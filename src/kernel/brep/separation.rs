@@ -8,7 +8,7 @@
 //!
 //! What is not proved here may still be sound: triangles tell ([`super::crossing`]).
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec2Swizzles};
 
 use crate::geom::{FaceRef, PolyMesh, orient::orient2d};
 
@@ -20,6 +20,9 @@ const SOME: usize = 12;
 
 /// With more corners it is not looked for how near they come to each other.
 const FEW: usize = 8;
+
+/// The edges of a face with more corners are not compared with each other.
+const SIMPLE: usize = 48;
 
 /// How many times more than nothing the clearance must be, with room for what the argument leaves out.
 const ROOM: f64 = 64.0;
@@ -109,7 +112,8 @@ impl<'a> Hull<'a> {
             clearance: 0.0,
             is_simple: false,
         };
-        hull.is_simple = hull.is_seen_whole();
+        let outline = hull.outline();
+        hull.is_simple = is_seen_whole(&outline) || is_simple(&outline);
         if hull.is_simple && corners.len() <= FEW {
             hull.clearance = hull.least_distance();
         }
@@ -142,22 +146,20 @@ impl<'a> Hull<'a> {
         self.points[corner as usize]
     }
 
-    /// Whether it is seen whole, within less than half a turn, from one of its corners, so that it does not
-    /// cross itself.
-    fn is_seen_whole(&self) -> bool {
-        let count = self.corners.len();
-        let size = self.normal.abs();
-        let axis = if size.z >= size.x.max(size.y) { 2 } else { usize::from(size.y > size.x) };
-        let flat = |corner: u32| {
-            let p = self.at(corner);
-            DVec2::new(p[(axis + 1) % 3], p[(axis + 2) % 3])
+    /// The corners without the coordinate along which the normal is longest, counter-clockwise.
+    fn outline(&self) -> Vec<DVec2> {
+        let (size, all) = (self.normal.abs(), self.corners.iter().map(|&c| self.at(c)));
+        let (mut outline, normal): (Vec<DVec2>, f64) = if size.z >= size.x.max(size.y) {
+            (all.map(|p| DVec2::new(p.x, p.y)).collect(), self.normal.z)
+        } else if size.y > size.x {
+            (all.map(|p| DVec2::new(p.z, p.x)).collect(), self.normal.y)
+        } else {
+            (all.map(|p| DVec2::new(p.y, p.z)).collect(), self.normal.x)
         };
-        let sign = self.normal[axis].signum();
-        (0..if count == 3 { 1 } else { count }).any(|from| {
-            let at = |k: usize| flat(self.corners[(from + k) % count]);
-            let turns = |i: usize, j: usize| orient2d(at(0), at(i), at(j)) * sign > 0.0;
-            (2..count).all(|k| turns(k - 1, k) && turns(1, k))
-        })
+        if normal < 0.0 {
+            outline.iter_mut().for_each(|p| *p = p.yx());
+        }
+        outline
     }
 
     /// Whether a plane is found that keeps two faces apart.
@@ -269,6 +271,54 @@ impl<'a> Hull<'a> {
     }
 }
 
+/// Whether a polygon is seen whole, within less than half a turn, from one of its corners, so that it does not
+/// cross itself.
+fn is_seen_whole(outline: &[DVec2]) -> bool {
+    let count = outline.len();
+    (0..if count == 3 { 1 } else { count }).any(|from| {
+        let at = |k: usize| outline[if from + k < count { from + k } else { from + k - count }];
+        let turns = |i: usize, j: usize| orient2d(at(0), at(i), at(j)) > 0.0;
+        (2..count).all(|k| turns(k - 1, k) && turns(1, k))
+    })
+}
+
+/// Whether edges of a polygon with few corners meet nowhere but at the corner between two, and its inside is to
+/// their left. However such a polygon is cut into triangles, they have no area in common.
+fn is_simple(outline: &[DVec2]) -> bool {
+    let count = outline.len();
+    if count > SIMPLE {
+        return false;
+    }
+    let at = |k: usize| outline[if k < count { k } else { k - count }];
+    let are_apart = |i: usize, j: usize| is_beside([at(i), at(i + 1)], [at(j), at(j + 1)]);
+    let goes_on = |k: usize| {
+        let [a, b, c] = [at(k), at(k + 1), at(k + 2)];
+        orient2d(a, b, c) != 0.0
+            || (precedes(a, b) && precedes(b, c))
+            || (precedes(b, a) && precedes(c, b))
+    };
+    // The first and the last edge are neighbours too.
+    let others = |i: usize| i + 2..if i == 0 { count - 1 } else { count };
+    let first = (1..count).fold(0, |k, i| if precedes(at(i), at(k)) { i } else { k });
+    orient2d(at(first + count - 1), at(first), at(first + 1)) > 0.0
+        && (0..count).all(|i| goes_on(i) && others(i).all(|j| are_apart(i, j)))
+}
+
+/// Whether two segments are told to have no point in common: by their boxes, or by the line of one of them.
+fn is_beside([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
+    let is_far = a.max(b).cmplt(c.min(d)).any() || c.max(d).cmplt(a.min(b)).any();
+    let parts = |p: DVec2, q: DVec2, r: DVec2, s: DVec2| {
+        let (one, other) = (orient2d(p, q, r), orient2d(p, q, s));
+        (one > 0.0 && other > 0.0) || (one < 0.0 && other < 0.0)
+    };
+    is_far || parts(a, b, c, d) || parts(c, d, a, b)
+}
+
+/// Whether a place is left of another, or below it.
+fn precedes(a: DVec2, b: DVec2) -> bool {
+    a.x < b.x || (a.x == b.x && a.y < b.y)
+}
+
 #[cfg(test)]
 mod tests {
     use glam::dvec3;
@@ -333,5 +383,33 @@ mod tests {
             assert!(!hull(a).is_apart(&hull(b)), "{a} {b}");
         }
         assert!(hull(0).is_simple() && !hull(4).is_simple());
+    }
+
+    #[test]
+    fn edges_tell_what_is_simple() {
+        let is_simple = |corners: &[[f64; 2]]| {
+            let outline: Vec<DVec2> = corners.iter().map(|&c| DVec2::from(c)).collect();
+            let turned = |by: usize| [&outline[by..], &outline[..by]].concat();
+            let found = is_simple(&outline);
+            assert!((0..outline.len()).all(|by| is_simple(&turned(by)) == found));
+            found
+        };
+        let comb = [[0., 0.], [5., 0.], [5., 3.], [4., 3.], [4., 1.], [1., 1.], [1., 3.], [0., 3.]];
+        assert!(is_simple(&comb));
+        let straight = [[0., 0.], [1., 0.], [2., 0.], [2., 2.], [1., 1.], [0., 2.]];
+        assert!(is_simple(&straight));
+        let mut back = comb;
+        back.reverse();
+        assert!(!is_simple(&back));
+        let crossing = [[0., 0.], [4., 0.], [4., 4.], [2., -1.], [0., 4.]];
+        assert!(!is_simple(&crossing));
+        let touching = [[0., 0.], [4., 0.], [4., 4.], [2., 0.], [0., 4.]];
+        assert!(!is_simple(&touching));
+        let spike = [[0., 0.], [4., 0.], [2., 0.], [2., 4.], [0., 4.]];
+        assert!(!is_simple(&spike));
+        let double = [[0., 0.], [4., 0.], [4., 0.], [4., 4.], [0., 4.]];
+        assert!(!is_simple(&double));
+        let twice = [[0., 0.], [2., 0.], [2., 2.], [0., 0.], [2., 0.], [2., 2.]];
+        assert!(!is_simple(&twice));
     }
 }

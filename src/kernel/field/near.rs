@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::{Nearest, Polyhedral, half_diagonal, lanes::LANES, prism::Framed};
+use super::{Nearest, Polyhedral, half_diagonal, lanes::LANES, polyhedral::Visited, prism::Framed};
 use crate::geom::Bounds;
 
 /// Slack for rounding, relative to coordinates.
@@ -96,38 +96,33 @@ impl Near {
     #[inline]
     pub fn nearest(&self, whole: &Polyhedral, p: DVec3) -> Nearest {
         let moved = p.distance(self.middle);
-        let (mut found, mut square) = (self.list[0].triangle, f64::INFINITY);
-        let mut visit = |triangle: u32, square: &mut f64| {
-            let apart = whole.triangle(triangle).nearest(p).0.distance_squared(p);
-            if apart < *square {
-                (found, *square) = (triangle, apart);
-            }
-        };
+        let mut best = Visited::none_but(self.list[0].triangle);
+        let mut apart = f64::INFINITY;
         let framed = self.prisms.as_ref().map(|prisms| (prisms, prisms.question(p)));
         let Some((prisms, question)) = framed.filter(|(_, question)| question.is_near()) else {
             for candidate in self.list.iter() {
-                if candidate.away - moved > square.sqrt() {
+                if candidate.away - moved > apart {
                     break;
                 }
-                visit(candidate.triangle, &mut square);
+                apart = best.visit(whole, candidate.triangle, p);
             }
-            return whole.on_triangle(found, p);
+            return whole.at_visited(&best, p);
         };
         let mut cut = f32::INFINITY;
         for (prisms, list) in prisms.eights.iter().zip(self.list.chunks(LANES)) {
-            if list[0].away - moved > square.sqrt() {
+            if list[0].away - moved > apart {
                 break;
             }
             let squares = prisms.away(question.at);
             let (mut left, mut lane) = (squares.below(cut), squares.least());
             while left >> lane & 1 == 1 {
-                visit(list[lane as usize].triangle, &mut square);
-                cut = question.cut(square);
+                apart = best.visit(whole, list[lane as usize].triangle, p);
+                cut = question.cut_at(apart);
                 left &= squares.below(cut) & !(1 << lane);
                 lane = left.trailing_zeros() % LANES as u32;
             }
         }
-        whole.on_triangle(found, p)
+        whole.at_visited(&best, p)
     }
 }
 

@@ -50,6 +50,36 @@ struct Facet {
     face: u32,
 }
 
+/// The nearest of the triangles that were looked at.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Visited {
+    triangle: u32,
+    point: DVec3,
+    part: Part,
+    square: f64,
+    /// Its distance, mm.
+    apart: f64,
+}
+
+impl Visited {
+    /// None was; this one is the answer if no distance is finite.
+    pub fn none_but(triangle: u32) -> Visited {
+        let (square, apart) = (f64::INFINITY, f64::INFINITY);
+        Visited { triangle, point: DVec3::NAN, part: Part::Inside, square, apart }
+    }
+
+    /// Looks at a triangle; gives the least distance.
+    #[inline(always)]
+    pub fn visit(&mut self, whole: &Polyhedral, triangle: u32, p: DVec3) -> f64 {
+        let (point, part) = whole.triangle(triangle).nearest(p);
+        let square = point.distance_squared(p);
+        if square < self.square {
+            *self = Visited { triangle, point, part, square, apart: square.sqrt() };
+        }
+        self.apart
+    }
+}
+
 /// The distance field of a solid bounded by a closed mesh, which must have a face.
 ///
 /// What every question reads is kept small: points asked at random wait for memory more than for numbers.
@@ -122,19 +152,16 @@ impl Polyhedral {
 
     /// The nearest point of the boundary and what it lies on.
     pub fn nearest(&self, p: DVec3) -> Nearest {
-        let (mut found, mut limit) = (0, f64::INFINITY);
+        let mut best = Visited::none_but(0);
         self.tree.nearest(p, f64::INFINITY, |leaf, _| {
-            for i in leaf {
-                let square = self.triangle(i).nearest(p).0.distance_squared(p);
-                (limit, found) = if square < limit { (square, i) } else { (limit, found) };
-            }
-            limit
+            leaf.for_each(|i| _ = best.visit(self, i, p));
+            best.square
         });
         debug_assert!(
-            limit.is_finite() || !p.is_finite(),
+            best.square.is_finite() || !p.is_finite(),
             "a mesh with a face has a nearest point"
         );
-        self.on_triangle(found, p)
+        self.at_visited(&best, p)
     }
 
     /// Whether a point is inside or, as far as rounding lets tell, on the boundary.
@@ -150,19 +177,22 @@ impl Polyhedral {
         self.distance(p) <= ROUNDING * size
     }
 
-    /// The nearest point, known to lie on a triangle.
-    pub(super) fn on_triangle(&self, i: u32, p: DVec3) -> Nearest {
-        let (facet, triangle) = (&self.facets[i as usize], self.triangle(i));
-        let (point, part) = triangle.nearest(p);
+    /// The nearest point, found on a triangle.
+    pub(super) fn at_visited(&self, found: &Visited, p: DVec3) -> Nearest {
+        let &Visited { triangle, mut point, mut part, mut apart, .. } = found;
+        if apart == f64::INFINITY {
+            (point, part) = self.triangle(triangle).nearest(p);
+            apart = p.distance(point);
+        }
+        let facet = &self.facets[triangle as usize];
         let (feature, normal) = match part {
-            Part::Inside => (Feature::Face(facet.face), triangle.normal()),
+            Part::Inside => (Feature::Face(facet.face), self.triangle(triangle).normal()),
             Part::Corner(k) => {
                 let corner = facet.corners[k] as usize;
                 (Feature::Vertex(self.names[corner]), self.corners[corner])
             }
-            Part::Edge(k) => self.on_edge(i, k),
+            Part::Edge(k) => self.on_edge(triangle, k),
         };
-        let apart = p.distance(point);
         let outside = match normal == DVec3::ZERO {
             true => !self.surrounds(p),
             false => (p - point).dot(normal) >= 0.0,

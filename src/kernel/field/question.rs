@@ -34,7 +34,13 @@ impl Question {
         if best < 0.0 {
             return -1.0; // nothing is so near
         }
-        let far = best.sqrt() + self.slack;
+        self.cut_at(best.sqrt())
+    }
+
+    /// The same for a distance.
+    #[inline]
+    pub fn cut_at(&self, apart: f64) -> f32 {
+        let far = apart + self.slack;
         // A trifle more than what rounding to a single number and squaring may take away.
         (far * far) as f32 * (1.0 + 4.0 * f32::EPSILON) + f32::MIN_POSITIVE
     }

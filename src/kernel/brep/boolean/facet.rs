@@ -241,7 +241,9 @@ impl Facets {
         dropped: &mut Vec<[u32; 3]>,
     ) {
         let mirrors = leaf.local.mirrors();
-        for face in leaf.solid.mesh().faces().filter(|f| !snapped.rests(f.index())) {
+        let mesh = leaf.solid.mesh();
+        self.reserve(mesh.face_count());
+        for face in mesh.faces().filter(|f| !snapped.rests(f.index())) {
             self.add_face(number, face, (points, mirrors), space, dropped);
         }
         self.end_owner();
@@ -327,6 +329,7 @@ impl Facets {
     /// The facets of one operand alone.
     pub fn operand(&self, owner: u32) -> Facets {
         let mut alone = Facets::default();
+        alone.reserve(self.of_owner(owner as usize).len());
         self.of_owner(owner as usize).for_each(|f| alone.push_copy(self, f as u32, false));
         alone.end_owner();
         alone

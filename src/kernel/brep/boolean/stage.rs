@@ -56,6 +56,7 @@ pub(super) fn evaluate(
 /// The facets that take part, with their planes.
 fn active(rest: &Rest, operands: &[Facets], space: &mut Space) -> Facets {
     let mut facets = Facets::default();
+    facets.reserve(rest.active.len());
     let mut active = rest.active.iter().peekable();
     for (owner, operand) in (0u32..).zip(operands) {
         while let Some(&&(_, facet)) = active.peek().filter(|a| a.0 == owner) {
