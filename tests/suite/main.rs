@@ -26,4 +26,5 @@ mod sheets;
 mod sources;
 mod stretch;
 mod sweeps;
+mod true_surfaces;
 mod wireframes;
