@@ -149,18 +149,30 @@ impl Bvh {
     /// Calls `found` with every pair of different items here whose boxes meet, smaller number first, each
     /// once, in a fixed order.
     pub fn self_pairs(&self, mut found: impl FnMut(u32, u32)) {
+        self.find_pair(|i, j| {
+            found(i, j);
+            false
+        });
+    }
+
+    /// The first pair in the order of [`Bvh::self_pairs`] that `is_sought`; those after it are not asked.
+    pub fn find_pair(&self, mut is_sought: impl FnMut(u32, u32) -> bool) -> Option<(u32, u32)> {
         let mut open = vec![(1, 1)];
         while let Some((a, b)) = open.pop() {
             if !self.nodes[a].meets(&self.nodes[b]) {
                 continue;
             }
             if self.is_leaf(a) {
-                let each = &mut |i: u32, j: u32| {
-                    if a != b || i < j {
-                        found(i.min(j), i.max(j));
+                let mut first = None;
+                self.leaf_pairs(a, self, b, &mut |i, j| {
+                    let pair = (i.min(j), i.max(j));
+                    if first.is_none() && (a != b || i < j) && is_sought(pair.0, pair.1) {
+                        first = Some(pair);
                     }
-                };
-                self.leaf_pairs(a, self, b, each);
+                });
+                if first.is_some() {
+                    return first;
+                }
                 continue;
             }
             let [a0, a1, b0, b1] = [2 * a, 2 * a + 1, 2 * b, 2 * b + 1];
@@ -169,6 +181,7 @@ impl Bvh {
                 open.push((a1, b0));
             }
         }
+        None
     }
 
     /// The item nearest to `query` and the square of its distance: `distance_squared` gives that of an item,

@@ -35,7 +35,8 @@ const SAME: f64 = 1e-9;
 impl CurvedGrid {
     /// This grid and another one that has a border with it in common, as one grid whose rows run along that border. With
     /// `smooth` both are bent so that they leave the border in one direction, the mean of both, which moves points by less
-    /// and less up to the borders opposite.
+    /// and less up to the borders opposite. The borders beside the common one stay where they are: where these meet at
+    /// an angle, so do the surfaces there, less and less up to an eighth of the common border away.
     ///
     /// # Departures
     /// METHODS 4.3 leaves open how patches are joined.
@@ -133,15 +134,35 @@ fn together(ours: &Rows, theirs: &Rows, smooth: bool) -> Rows {
         (ours[0][j], theirs[0][j]) = (kept, kept);
     }
     if smooth {
-        for j in 0..places.len() {
-            let leave = |rows: &Rows| (rows[1][j] - rows[0][j]).normalize_or_zero();
-            let [a, b] = [leave(&ours), leave(&theirs)];
-            let Some(middle) = (b - a).try_normalize() else { continue };
-            bend(&mut ours, j, -middle - a);
-            bend(&mut theirs, j, middle - b);
+        let turns: Vec<[DVec3; 2]> = (0..places.len()).map(|j| turn(&ours, &theirs, j)).collect();
+        let sides = [turns[0], turns[turns.len() - 1]];
+        for (j, place) in places.iter().enumerate() {
+            let [first, last] = [*place, 1.0 - place].map(fading);
+            let kept = |k: usize| turns[j][k] - sides[0][k] * first - sides[1][k] * last;
+            bend(&mut ours, j, kept(0));
+            bend(&mut theirs, j, kept(1));
         }
     }
     ours.into_iter().rev().chain(theirs.into_iter().skip(1)).collect()
+}
+
+/// The changes of direction with which a column of both leaves the border along the mean of both.
+fn turn(ours: &Rows, theirs: &Rows, j: usize) -> [DVec3; 2] {
+    let leave = |rows: &Rows| (rows[1][j] - rows[0][j]).normalize_or_zero();
+    let [a, b] = [leave(ours), leave(theirs)];
+    match (b - a).try_normalize() {
+        Some(middle) => [-middle - a, middle - b],
+        None => [DVec3::ZERO; 2],
+    }
+}
+
+/// The part of the common border over which what the sides keep fades out.
+const SIDE: f64 = 0.125;
+
+/// 1 at a side, 0 from [`SIDE`] on.
+fn fading(away: f64) -> f64 {
+    let rest = (1.0 - away / SIDE).max(0.0);
+    rest * rest
 }
 
 /// Adds a change of direction to a column at its start, less and less up to its end.
@@ -182,14 +203,21 @@ mod tests {
         let sharp = up.joined(&down, false).expect("they meet");
         let smooth = up.joined(&down, true).expect("they meet");
         assert_eq!(sharp.size()[0], 101);
+        let middle = smooth.size()[1] / 2;
         let turn = |grid: &CurvedGrid| {
-            let at = |u: usize| grid.point(u, 1);
+            let at = |u: usize| grid.point(u, middle);
             let ridge = (0..101).find(|&u| (at(u).x - 10.0).abs() < 1e-9).expect("the ridge");
             let step = |from: usize| (at(from + 1) - at(from)).normalize();
             step(ridge - 1).angle_between(step(ridge)).to_degrees()
         };
         assert!((turn(&sharp) - 90.0).abs() < 1e-6);
         assert!(turn(&smooth) < 6.0, "{}", turn(&smooth));
+        // The four borders stay; points inside do not.
+        let [nu, nv] = smooth.size();
+        let moved = |u: usize, v: usize| smooth.point(u, v).distance(sharp.point(u, v));
+        assert!((0..nu).all(|u| moved(u, 0) == 0.0 && moved(u, nv - 1) == 0.0));
+        assert!((0..nv).all(|v| moved(0, v) == 0.0 && moved(nu - 1, v) == 0.0));
+        assert!(moved(nu / 4, middle) > 0.1);
     }
 
     #[test]

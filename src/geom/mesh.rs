@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::{placement::Placement, surface::Surface};
+use super::{form::Form, placement::Placement, surface::Surface};
 
 /// An sRGB colour, 0 to 255 each.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -26,6 +26,8 @@ pub struct Color {
 pub struct Origin {
     /// The true surface, in the frame of the mesh.
     pub surface: Surface,
+    /// Of a [`Surface::Smooth`] that was swept: its parameter surface, in the frame of the mesh.
+    pub form: Option<Form>,
     /// The names given with `tag`, the outermost last.
     pub tags: Vec<Arc<str>>,
     /// The colour given with `color`; the innermost one holds.
@@ -35,7 +37,13 @@ pub struct Origin {
 impl Origin {
     /// An origin without tag and colour.
     pub fn of(surface: Surface) -> Origin {
-        Origin { surface, tags: vec![], color: None }
+        Origin { surface, form: None, tags: vec![], color: None }
+    }
+
+    /// The origin of a face after a placement.
+    pub fn placed(&self, placement: &Placement) -> Origin {
+        let form = self.form.as_ref().map(|form| form.placed(placement));
+        Origin { surface: self.surface.placed(placement), form, ..self.clone() }
     }
 }
 
@@ -180,7 +188,7 @@ impl PolyMesh {
             *p = placement.point(*p);
         }
         for origin in &mut mesh.origins {
-            origin.surface = origin.surface.placed(placement);
+            *origin = origin.placed(placement);
         }
         if placement.mirrors() {
             mesh.flip();

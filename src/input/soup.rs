@@ -37,7 +37,7 @@ impl Soup {
         let (mesh, names) = (&mut self.mesh, &self.names);
         *self.origins.entry((color, names.len() as u32)).or_insert_with(|| {
             let tags = names.last().filter(|n| !n.is_empty()).cloned().into_iter().collect();
-            mesh.add_origin(Origin { surface: Surface::Facets, tags, color })
+            mesh.add_origin(Origin { tags, color, ..Origin::of(Surface::Facets) })
         })
     }
 

@@ -12,7 +12,7 @@ use super::{
 use crate::{
     base::{Code, Diagnostic, FileError, Phase, watch::during},
     geom::{
-        CurvedGrid, Raster, Tolerance,
+        Curve, CurvedGrid, Raster, Tolerance,
         isometric::{IsoDrawing, IsoScale},
         spherical_projection::{Projection, solid_angle},
     },
@@ -112,6 +112,16 @@ impl Geometry for Realizer<'_> {
     ) -> Result<f64, GeometryError> {
         let field = self.field(graph, shape)?;
         field.map(|field| field.distance(point)).ok_or_else(nowhere)
+    }
+
+    fn distance_to_curve(
+        &self,
+        graph: &ShapeGraph,
+        shape: ShapeId,
+        curve: &Curve,
+    ) -> Result<f64, GeometryError> {
+        let solid = self.solid(graph, shape)?;
+        distance::curve(&solid.polyhedron, curve).ok_or_else(nowhere)
     }
 
     fn distance(&self, graph: &ShapeGraph, a: ShapeId, b: ShapeId) -> Result<f64, GeometryError> {

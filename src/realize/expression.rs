@@ -27,7 +27,7 @@ impl Coded for BooleanError {
         match self {
             BooleanError::NotFinite => Code::Degenerate,
             BooleanError::NotClosed => Code::OpenMesh,
-            BooleanError::TooLarge => Code::Limit,
+            BooleanError::TooLarge | BooleanError::Tangled(_) => Code::Limit,
         }
     }
 }

@@ -40,7 +40,7 @@ pub fn solid(realizer: &Realizer, file: &str, how: Option<Heal>) -> Made<Polyhed
 /// What the surface winds around, where it crosses or covers itself: then the shells alone do not say what
 /// is inside. Refused if that is nothing.
 fn enclosed(solid: Polyhedron, file: &str, how: Option<Heal>) -> Made<Polyhedron> {
-    let mended = how == Some(Heal::Winding) || crossing(solid.mesh()).is_some();
+    let mended = how == Some(Heal::Winding) || crossing(solid.mesh()) != Ok(None);
     let solid = if mended { wound(&solid, file)? } else { solid };
     if !is_hollow(&solid) {
         return Ok(solid);

@@ -15,6 +15,7 @@ use crate::{
     geom::{Bounds, sides as count},
     kernel::brep::{
         Polyhedron,
+        boolean::BooleanError,
         extrude::{ExtrudeError, extrude},
         faces::{self, FacesError},
         hull::{HullError, hull},
@@ -57,6 +58,7 @@ impl Coded for SheetError {
         match self {
             SheetError::Floor { .. } => Code::OutOfRange,
             SheetError::Defect(_) | SheetError::Rim { .. } => Code::OpenMesh,
+            SheetError::Crossing(BooleanError::Tangled(_)) => Code::Limit,
             SheetError::Crossing(_) => Code::SelfCrossing,
             SheetError::Bend { .. } | SheetError::Flat => Code::Degenerate,
         }

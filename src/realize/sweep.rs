@@ -13,6 +13,7 @@ use crate::{
     geom::{CurvedGrid, Tolerance},
     kernel::brep::{
         Polyhedron,
+        boolean::BooleanError,
         sweep::{self, Along, Between, Placed, SweepError},
     },
     shape::{
@@ -23,7 +24,9 @@ use crate::{
 impl Coded for SweepError {
     fn code(&self) -> Code {
         match self {
-            SweepError::TooManyFacets => Code::Limit,
+            SweepError::TooManyFacets
+            | SweepError::Tangled(_)
+            | SweepError::Union(BooleanError::Tangled(_)) => Code::Limit,
             SweepError::Crossing { .. } | SweepError::Union(_) => Code::SelfCrossing,
             _ => Code::Degenerate,
         }
@@ -33,6 +36,9 @@ impl Coded for SweepError {
         let words = match self {
             SweepError::Bend { .. } => {
                 "make the profile smaller or the bend wider, or give `repair = UNION`"
+            }
+            SweepError::Tangled(_) | SweepError::Union(BooleanError::Tangled(_)) => {
+                "a coarser tolerance, less twist or a shorter path makes fewer facets"
             }
             SweepError::Crossing { .. } => "move the parts apart, or give `repair = UNION`",
             SweepError::Order { .. } => {

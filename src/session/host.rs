@@ -9,7 +9,7 @@ use crate::{
     base::{Diagnostic, FileError, Phase, SourceId, watch::during},
     eval::{Host, Loaded, library},
     geom::{
-        CurvedGrid, Raster,
+        Curve, CurvedGrid, Raster,
         isometric::{IsoDrawing, IsoScale},
     },
     realize,
@@ -101,6 +101,15 @@ impl Geometry for Session<'_> {
         point: DVec3,
     ) -> Result<f64, GeometryError> {
         self.realizer.distance_to_point(graph, shape, point)
+    }
+
+    fn distance_to_curve(
+        &self,
+        graph: &ShapeGraph,
+        shape: ShapeId,
+        curve: &Curve,
+    ) -> Result<f64, GeometryError> {
+        self.realizer.distance_to_curve(graph, shape, curve)
     }
 
     fn distance(&self, graph: &ShapeGraph, a: ShapeId, b: ShapeId) -> Result<f64, GeometryError> {

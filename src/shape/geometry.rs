@@ -12,7 +12,7 @@ use super::{
 use crate::{
     base::{Diagnostic, FileError},
     geom::{
-        CurvedGrid, Raster,
+        Curve, CurvedGrid, Raster,
         isometric::{IsoDrawing, IsoScale},
     },
 };
@@ -150,6 +150,14 @@ pub trait Geometry {
         graph: &ShapeGraph,
         shape: ShapeId,
         point: DVec3,
+    ) -> Result<f64, GeometryError>;
+
+    /// Least distance in mm of a point of a curve from a solid, negative inside.
+    fn distance_to_curve(
+        &self,
+        graph: &ShapeGraph,
+        shape: ShapeId,
+        curve: &Curve,
     ) -> Result<f64, GeometryError>;
 
     /// Distance in mm between two solids; negative (the depth of the deepest point) where a part of the

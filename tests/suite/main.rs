@@ -27,4 +27,5 @@ mod sources;
 mod stretch;
 mod sweeps;
 mod tetrahedra;
+mod true_surfaces;
 mod wireframes;

@@ -85,7 +85,7 @@ fn three_hundred_random_rails() {
             match between(&placed, &way, tolerance(0.1)) {
                 Ok(solid) => {
                     assert_eq!(euler(&solid), 2, "{case}");
-                    assert!(volume(&solid) > 0.0 && crossing(solid.mesh()).is_none(), "{case}");
+                    assert!(volume(&solid) > 0.0 && crossing(solid.mesh()) == Ok(None), "{case}");
                 }
                 Err(SweepError::Crossing { .. }) => crossed += 1,
                 Err(error) => panic!("{case}: {error}"),

@@ -64,7 +64,7 @@ fn contoured<L: Level>(
 ) -> Result<Polyhedron, OffsetError> {
     let reach = field.extent().grown(by.max(0.0));
     let within = reach.grown(ROOM * (reach.max - reach.min).max_element());
-    let faceted = |o: &Origin| Origin { surface: Surface::Facets, ..o.clone() };
+    let faceted = |o: &Origin| Origin { surface: Surface::Facets, form: None, ..o.clone() };
     let origins: Vec<Origin> = mesh.origins().iter().map(faceted).collect();
     let origin = |p: DVec3| mesh.face(field.nearest(p).face as usize).origin_index();
     Ok(level_set(level, &within, tolerance, &origins, origin)?)

@@ -244,7 +244,7 @@ fn raw_surface(
 
 /// Frees a surface of its crossings.
 fn uncrossed(raw: Raw) -> Result<Polyhedron, OffsetError> {
-    let crosses = raw.folded || crossing(&raw.mesh).is_some();
+    let crosses = raw.folded || crossing(&raw.mesh) != Ok(None);
     // Where points fell together the surface may be pinched.
     let pinched = |_| OffsetError::Crowded { limit: surface::CROWD };
     let surface = Polyhedron::new(raw.mesh).map_err(pinched)?;

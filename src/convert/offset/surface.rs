@@ -444,7 +444,7 @@ impl<'a> Builder<'a> {
             }
         }
         let color = parents().find_map(|o| o.color);
-        let number = self.out.add_origin(Origin { surface, tags, color });
+        let number = self.out.add_origin(Origin { surface, form: None, tags, color });
         self.origins.insert(source, number);
         number
     }

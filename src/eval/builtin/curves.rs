@@ -33,6 +33,8 @@ pub const TABLE: &[(&str, Native)] = &[
     ("curve.curvature", curvature),
     ("curve.nearest", nearest),
     ("curve.distance", distance),
+    ("curve.distance.curves", distance_of_curves),
+    ("curve.distance.solid", distance_from_solid),
     ("curve.points", points),
     ("curve.reverse", |_, a| Ok(value(curve(a, 0)?.reversed()))),
     ("curve.split", split),
@@ -184,6 +186,21 @@ fn distance(_: &mut Evaluator, args: &Args) -> Outcome<Value> {
     let i = usize::from(!matches!(args.value(0), Value::Curve(_)));
     let (curve, p) = (curve(args, i)?, args.point(1 - i)?);
     Ok(Value::length(curve.at(curve.nearest(p)).distance(p)))
+}
+
+fn distance_of_curves(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
+    let (a, b) = (curve(args, 0)?, curve(args, 1)?);
+    evaluator.tick((a.pieces().len() + b.pieces().len()) as u64, args.call)?;
+    Ok(Value::length(a.distance(b)))
+}
+
+/// The distance of a curve and a solid, in either order.
+fn distance_from_solid(evaluator: &mut Evaluator, args: &Args) -> Outcome<Value> {
+    let i = usize::from(!matches!(args.value(0), Value::Curve(_)));
+    let (curve, shape) = (curve(args, i)?, args.shape(1 - i)?);
+    let answer =
+        evaluator.ask(args.call, |host, graph| host.distance_to_curve(graph, shape, curve));
+    answer.map(Value::length)
 }
 
 /// `curve, n`: n equal steps of the parameter of each piece.

@@ -38,6 +38,7 @@ pub const TABLE: &[(&str, Native)] = &[
     ("view.dim.angle", dim_angle),
     ("view.cutting_line", cutting_line),
     ("view.caption", caption),
+    ("view.mesh", mesh),
 ];
 
 /// `shapes, from, eye, target, fov, window, hidden, style, method, light, shadow, grid`.
@@ -74,17 +75,30 @@ fn cast(args: &Args) -> Outcome<Option<CastSpec>> {
     Ok(Some(CastSpec { toward: sun.toward, ground }))
 }
 
-/// The pitch of the guide mesh, `{ iso_grid = pitch }`.
+/// The field of a record that holds the pitch of a guide mesh.
+const MESH: &str = "iso";
+
+/// `pitch`: the guide mesh of isometric paper.
+fn mesh(_: &mut Evaluator, args: &Args) -> Outcome<Value> {
+    args.positive(0)?;
+    Ok(Value::record(vec![(MESH.into(), args.value(0).clone())]))
+}
+
+/// The pitch of the guide mesh, mm.
 fn grid(args: &Args, projection: Projection) -> Outcome<Option<f64>> {
     if !args.given(11) {
         return Ok(None);
     }
     let pitch = match args.value(11) {
-        Value::Record(record) => record.get("iso_grid"),
+        Value::Record(record) => record.get(MESH),
+        Value::Symbol(Symbol::Iso) => {
+            let words = "the isometric grid needs a pitch: `grid = ISO(5mm)`";
+            return args.fail(11, Code::MissingArgument, words);
+        }
         _ => None,
     };
     let Some(pitch) = pitch else {
-        let words = format!("`grid` is iso_grid(pitch), got {}", shown(args.value(11)));
+        let words = format!("`grid` is ISO(pitch), got {}", shown(args.value(11)));
         return args.fail(11, Code::WrongKind, words);
     };
     if projection != Projection::Side(View::Iso) {

@@ -229,7 +229,11 @@ impl Evaluator<'_> {
         callee: &Value,
         given: Call,
     ) -> Outcome<Value> {
-        let Value::Function(function) = callee else {
+        let called = match callee {
+            Value::Symbol(symbol) => self.called_constant(*symbol)?,
+            _ => None,
+        };
+        let Value::Function(function) = called.as_ref().unwrap_or(callee) else {
             let words = format!("{} cannot be called", callee.words());
             return fail(base::Code::WrongKind, given.callee, words);
         };

@@ -7,10 +7,11 @@ use super::{
         evaluator::{CallRecord, Evaluator},
         failure::{Failure, Outcome, fail},
         instance::{Cell, Given, Instance, InstanceId},
+        library::Index,
         nearest::did_you_mean,
         types::{Type, collect_shapes, shown},
         unit::{ArgumentCode, CodeId, GlobalKind, ParamCode, Unit},
-        value::{Function, Range, Traced, Value},
+        value::{Closure, Function, Range, Symbol, Traced, Value},
     },
     Call, Frame,
 };
@@ -435,6 +436,19 @@ impl Evaluator<'_> {
     }
 
     fn load_library(&mut self, number: u32) -> Outcome<Value> {
+        let (constant, signatures) = self.declared(number)?;
+        Ok(constant.unwrap_or_else(|| overloads(number, signatures)))
+    }
+
+    /// What is called when a constant of the library is: `ISO` is a direction, `ISO(5mm)` a mesh of paper.
+    pub(super) fn called_constant(&mut self, symbol: Symbol) -> Outcome<Option<Value>> {
+        let Some(number) = Index::get().find(symbol.name()) else { return Ok(None) };
+        let (_, signatures) = self.declared(number)?;
+        Ok((!signatures.is_empty()).then(|| overloads(number, signatures)))
+    }
+
+    /// What the declarations of a name of the library say: its value as a constant, and its signatures.
+    fn declared(&mut self, number: u32) -> Outcome<(Option<Value>, Vec<Closure>)> {
         let unit = self.library_unit(number)?;
         let frame = Frame {
             unit: &unit,
@@ -443,7 +457,7 @@ impl Evaluator<'_> {
             captures: &[],
             myself: None,
         };
-        let mut signatures = vec![];
+        let (mut constant, mut signatures) = (None, vec![]);
         for global in &unit.globals {
             let base = self.stack.len();
             self.stack.resize(base + global.frame as usize, Value::NONE);
@@ -452,20 +466,25 @@ impl Evaluator<'_> {
             match value? {
                 Value::Function(function) => match Arc::try_unwrap(function) {
                     Ok(Function::Closure(closure)) => signatures.push(closure),
-                    Ok(function) => return Ok(Value::Function(Arc::new(function))),
-                    Err(shared) => return Ok(Value::Function(shared)),
+                    Ok(function) => constant = Some(Value::Function(Arc::new(function))),
+                    Err(shared) => constant = Some(Value::Function(shared)),
                 },
-                constant => return Ok(constant),
+                value => constant = Some(value),
             }
         }
-        let name = super::super::library::Index::get().name(number).into();
-        Ok(Value::Function(Arc::new(Function::Overloads { name, signatures })))
+        Ok((constant, signatures))
     }
 
     /// Whether a `test ... fails` is running, whose errors are not for the modeller.
     pub(in crate::eval) fn expecting_failure(&self) -> bool {
         self.test.as_ref().is_some_and(|test| test.fails)
     }
+}
+
+/// A function of the library with its signatures.
+fn overloads(number: u32, signatures: Vec<Closure>) -> Value {
+    let name = Index::get().name(number).into();
+    Value::Function(Arc::new(Function::Overloads { name, signatures }))
 }
 
 impl CallRecord {

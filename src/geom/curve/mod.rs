@@ -8,6 +8,8 @@
 //! 1 - sin a, sin a + cos a - 1 and 1 - cos a. It is kept as that quarter, so that equal steps of its parameter are the
 //! equal angles of the paper's sampling.
 
+mod chord;
+mod distance;
 mod nearest;
 mod piece;
 mod plane;
@@ -19,6 +21,7 @@ use glam::DVec3;
 use thiserror::Error;
 
 pub use self::{
+    chord::Chord,
     piece::{Jet, Piece, Turn},
     plane::{Flat, PlaneError},
     through::slopes,
@@ -224,6 +227,16 @@ impl Curve {
             points.extend((1..=chords).map(|i| piece.at(f64::from(i) / f64::from(chords))));
         }
         points
+    }
+
+    /// Places along it, from the first to the last, between which it has no more than [plain](Piece::plain_parts) parts.
+    pub fn plain_places(&self) -> Vec<f64> {
+        let parts = |(i, piece): (usize, &Piece)| {
+            let count = piece.plain_parts();
+            (0..count).map(move |k| i as f64 + f64::from(k) / f64::from(count))
+        };
+        let last = self.pieces.len() as f64;
+        self.pieces.iter().enumerate().flat_map(parts).chain([last]).collect()
     }
 
     /// The chords that [`points`](Curve::points) would make.

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::super::{
-    Placement, Tolerance,
+    Bounds, Placement, Tolerance,
     flatten::arc_chords,
     trig::{cos_deg, sin_deg},
 };
@@ -189,12 +189,51 @@ impl Piece {
             Piece::Turn(turn) => {
                 arc_chords(turn.reach(), (turn.to - turn.from).to_radians(), tolerance)
             }
+            Piece::Bezier(_) => {
+                (self.bend() / (8.0 * tolerance.mm())).sqrt().ceil().clamp(1.0, f64::from(u32::MAX))
+                    as u32
+            }
+        }
+    }
+
+    /// A bound of the second derivative by the parameter, mm: a chord across a step h is off by at most an eighth of it times
+    /// the square of h.
+    pub fn bend(&self) -> f64 {
+        match self {
+            Piece::Line(_) => 0.0,
+            Piece::Turn(turn) => {
+                let speed = (turn.to - turn.from).to_radians();
+                turn.reach() * speed * speed
+            }
             Piece::Bezier(points) => {
                 let degree = (points.len() - 1) as f64;
                 let bend = points.windows(3).map(|p| (p[0] - 2.0 * p[1] + p[2]).length());
-                let bend = bend.fold(0.0, f64::max) * degree * (degree - 1.0);
-                (bend / (8.0 * tolerance.mm())).sqrt().ceil().clamp(1.0, f64::from(u32::MAX)) as u32
+                bend.fold(0.0, f64::max) * degree * (degree - 1.0)
             }
+        }
+    }
+
+    /// Equal parts of s at whose quarters it is not on the chord across them unless it is straight: of a turn a
+    /// quarter at most each. A polynomial of five zeros and a degree below five is none.
+    pub fn plain_parts(&self) -> u32 {
+        match self {
+            Piece::Line(_) => 1,
+            Piece::Turn(turn) => ((turn.to - turn.from).abs() / 90.0).ceil().max(1.0) as u32,
+            Piece::Bezier(points) if points.len() <= 5 => 1,
+            Piece::Bezier(points) => points.len() as u32,
+        }
+    }
+
+    /// A box that holds it, mm.
+    pub fn bounds(&self) -> Bounds {
+        match self {
+            Piece::Line(ends) => Bounds::of(*ends),
+            Piece::Turn(turn) => {
+                let reach = (turn.x * turn.x + turn.y * turn.y).map(f64::sqrt);
+                let ends = [turn.from, turn.to].map(|a| turn.center + turn.rise * (a / 360.0));
+                Bounds::of(ends.into_iter().flat_map(|p| [p - reach, p + reach]))
+            }
+            Piece::Bezier(points) => Bounds::of(points.iter().copied()),
         }
     }
 
@@ -205,7 +244,8 @@ impl Piece {
             Piece::Turn(turn) if turn.is_circular() => turn.jet(0.0).first.length() * s,
             _ => {
                 let whole = gauss(self, 0.0, s);
-                integral(self, [0.0, s], whole, DEEPEST)
+                let enough = LENGTH * whole + NOISE * self.farthest();
+                integral(self, [0.0, s], whole, (enough, DEEPEST))
             }
         }
     }
@@ -220,9 +260,10 @@ impl Piece {
             return 1.0;
         }
         let (mut low, mut high, mut s) = (0.0, 1.0, wanted / whole);
+        let rounding = EXACT * whole + NOISE * self.farthest();
         for _ in 0..MOST_STEPS {
             let wrong = self.length(s) - wanted;
-            if wrong.abs() <= EXACT * whole {
+            if wrong.abs() <= rounding {
                 break;
             }
             if wrong > 0.0 {
@@ -234,6 +275,16 @@ impl Piece {
             s = if step > low && step < high { step } else { (low + high) / 2.0 };
         }
         s
+    }
+
+    /// The largest coordinate of its control points, or about that.
+    fn farthest(&self) -> f64 {
+        let far = |p: &DVec3| p.abs().max_element();
+        match self {
+            Piece::Line(ends) => ends.iter().map(far).fold(0.0, f64::max),
+            Piece::Turn(turn) => far(&turn.center) + self.size(),
+            Piece::Bezier(points) => points.iter().map(far).fold(0.0, f64::max),
+        }
     }
 
     /// Points that it does not leave the neighbourhood of: its ends, or its control points.
@@ -257,8 +308,10 @@ const DEEPEST: u32 = 24;
 /// Steps to a length at most, and how near to it is near enough.
 const MOST_STEPS: u32 = 60;
 const EXACT: f64 = 1e-14;
-/// Relative error of lengths.
+/// Error of a part of a length, relative to the whole.
 const LENGTH: f64 = 1e-13;
+/// What rounding of coordinates makes of a length, relative to them: halving makes that no less.
+const NOISE: f64 = 16.0 * f64::EPSILON;
 
 /// De Casteljau's algorithm.
 fn bezier(points: &[DVec3], s: f64) -> Jet {
@@ -298,13 +351,15 @@ fn gauss(piece: &Piece, from: f64, to: f64) -> f64 {
     GAUSS.iter().map(|(x, weight)| weight * (speed(*x) + speed(-x))).sum::<f64>() * half
 }
 
-fn integral(piece: &Piece, [from, to]: [f64; 2], whole: f64, depth: u32) -> f64 {
+/// The length between two parameters, halved until the halves agree with the whole to `enough`.
+fn integral(piece: &Piece, [from, to]: [f64; 2], whole: f64, (enough, depth): (f64, u32)) -> f64 {
     let middle = (from + to) / 2.0;
     let halves = [gauss(piece, from, middle), gauss(piece, middle, to)];
     let sum = halves[0] + halves[1];
-    if depth == 0 || (sum - whole).abs() <= LENGTH * sum {
+    if depth == 0 || (sum - whole).abs() <= enough {
         return sum;
     }
-    integral(piece, [from, middle], halves[0], depth - 1)
-        + integral(piece, [middle, to], halves[1], depth - 1)
+    let deeper = (enough, depth - 1);
+    integral(piece, [from, middle], halves[0], deeper)
+        + integral(piece, [middle, to], halves[1], deeper)
 }

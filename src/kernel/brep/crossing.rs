@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use rustc_hash::{FxHashMap, FxHashSet};
+use thiserror::Error;
 
 use super::{
     Polyhedron,
@@ -20,28 +21,66 @@ type Triangle = [DVec3; 3];
 /// What rounding makes of a corner in a plane: a few units in the last place of its coordinates.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
+/// Pairs of triangles that are compared at most to find one that crosses: some seconds. Of 2 million facets that stand side
+/// by side some 20 million pairs have boxes that meet.
+pub const MOST_COMPARED: usize = 50_000_000;
+
+/// Pairs of triangles that are compared, and those of them that cross, at most where a surface is to be freed of its
+/// crossings.
+pub const MOST_UNITED: [usize; 2] = [10_000_000, 200_000];
+
+/// A surface whose crossings are not looked for to the end.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Error)]
+pub enum Tangled {
+    /// Boxes of triangles meet at too many places.
+    #[error(
+        "of its {triangles} triangles more than {limit} pairs lie so near one another that they would have to be compared"
+    )]
+    Near {
+        /// All triangles.
+        triangles: usize,
+        /// The limit.
+        limit: usize,
+    },
+    /// Too many cross.
+    #[error("of its {triangles} triangles more than {limit} pairs cross; so many are not united")]
+    Crossing {
+        /// All triangles.
+        triangles: usize,
+        /// The limit.
+        limit: usize,
+    },
+}
+
 /// A place in mm where the boundary of a solid passes through itself or lies on itself; `None` if it does
 /// nowhere. Decided by exact signs. Triangles that share a corner are not compared; shells that share an edge
-/// or a corner do not cross, one that stands on a face with an edge counts as crossing.
+/// or a corner do not cross, one that stands on a face with an edge counts as crossing. Fails after
+/// [`MOST_COMPARED`] pairs without a crossing.
 ///
 /// ```
 /// use glam::DVec3;
 /// use katachi::kernel::brep::{crossing::crossing, primitive::cuboid};
 /// let mut two = cuboid(DVec3::ZERO, DVec3::splat(2.0)).into_mesh();
-/// assert_eq!(crossing(&two), None);
+/// assert_eq!(crossing(&two), Ok(None));
 /// two.append(cuboid(DVec3::ONE, DVec3::new(3.0, 3.5, 4.0)).mesh());
-/// assert!(crossing(&two).is_some());
+/// assert!(crossing(&two).is_ok_and(|at| at.is_some()));
 /// ```
-pub fn crossing(mesh: &PolyMesh) -> Option<DVec3> {
+pub fn crossing(mesh: &PolyMesh) -> Result<Option<DVec3>, Tangled> {
     let soup = Soup::of(mesh);
-    let mut first = None;
-    Bvh::new(&soup.boxes).self_pairs(|i, j| {
-        let known = first.is_some_and(|known| known <= (i, j));
-        if !known && soup.shared(i, j) == 0 && soup.meet(i, j) {
-            first = Some((i, j));
-        }
-    });
-    first.map(|(i, j)| soup.place(i, j))
+    let found = soup.cross_until(MOST_COMPARED, 1)?;
+    Ok(found.first().map(|[i, j]| soup.place(*i, *j)))
+}
+
+/// Whether the boundary of a solid meets itself as [`crossing`] tells, and so little that it can be freed of it. Fails
+/// beyond [`MOST_UNITED`].
+pub(super) fn is_crossed(mesh: &PolyMesh) -> Result<bool, Tangled> {
+    let soup = Soup::of(mesh);
+    let [compared, crossing] = MOST_UNITED;
+    let found = soup.cross_until(compared, crossing + 1)?.len();
+    match found > crossing {
+        true => Err(Tangled::Crossing { triangles: soup.indices.len(), limit: crossing }),
+        false => Ok(found > 0),
+    }
 }
 
 /// A place in mm for every two triangles of the boundary that pass through each other or lie on each other,
@@ -228,6 +267,25 @@ impl Soup<'_> {
         self.corners.extend(places);
         self.planes.extend(self.corners[from..].iter().map(Slope::of));
         self.boxes.extend(self.corners[from..].iter().map(|t| Bounds::of(*t)));
+    }
+
+    /// Pairs of triangles without a common corner that meet, until there are `enough`, of at most `most` that are
+    /// compared.
+    fn cross_until(&self, most: usize, enough: usize) -> Result<Vec<[u32; 2]>, Tangled> {
+        let (mut compared, mut found) = (0, vec![]);
+        Bvh::new(&self.boxes).find_pair(|i, j| {
+            if self.shared(i, j) == 0 {
+                compared += 1;
+                if self.meet(i, j) {
+                    found.push([i, j]);
+                }
+            }
+            compared > most || found.len() >= enough
+        });
+        match compared > most && found.len() < enough {
+            true => Err(Tangled::Near { triangles: self.indices.len(), limit: most }),
+            false => Ok(found),
+        }
     }
 
     /// How many corners two triangles share.
@@ -475,15 +533,15 @@ mod tests {
     #[test]
     fn shells_that_touch_do_not_cross() {
         for at in [dvec3(2., 2., 0.), dvec3(2., 2., 2.), dvec3(5., 0., 0.)] {
-            assert_eq!(crossing(&with(&cuboid(at, at + 1.0))), None, "{at}");
+            assert_eq!(crossing(&with(&cuboid(at, at + 1.0))), Ok(None), "{at}");
         }
-        assert_eq!(crossing(torus(9., 3., 24, 12).mesh()), None);
+        assert_eq!(crossing(torus(9., 3., 24, 12).mesh()), Ok(None));
     }
 
     #[test]
     fn shells_that_cross_or_cover_each_other() {
         for at in [dvec3(1., 1., 1.), dvec3(0., 0., 0.), dvec3(2., 0.5, 0.5), dvec3(0.5, 0.5, 1.)] {
-            let found = crossing(&with(&cuboid(at, at + 2.0)));
+            let found = crossing(&with(&cuboid(at, at + 2.0))).expect("few");
             assert!(found.is_some_and(|p| p.cmpge(at).all() && p.cmple(at + 2.0).all()), "{at}");
         }
     }
@@ -492,7 +550,7 @@ mod tests {
     fn a_ball_whose_equator_lies_in_a_face() {
         let ball = crate::kernel::brep::primitive::sphere(0.5, 10);
         let up = crate::geom::Placement::new(glam::DMat3::IDENTITY, dvec3(1., 1., 2.));
-        assert!(crossing(&with(&ball.placed(&up))).is_some());
+        assert!(crossing(&with(&ball.placed(&up))).expect("few").is_some());
     }
 
     #[test]
@@ -502,10 +560,27 @@ mod tests {
             let place = crate::geom::Placement::new(turn, dvec3(1., 0.5, low));
             with(&cuboid(DVec3::ZERO, dvec3(1., 1., 1.)).placed(&place))
         };
-        assert!(crossing(&standing(2.0)).is_some());
+        assert!(crossing(&standing(2.0)).expect("few").is_some());
         assert_eq!(crossings(&standing(2.0)).len(), 0);
         assert!(!crossings(&standing(1.5)).is_empty());
         assert_eq!(crossings(&standing(2.5)).len(), 0);
+    }
+
+    /// Long needles across one another's boxes, in which no two cross.
+    #[test]
+    fn searches_end() {
+        let mut mesh = PolyMesh::default();
+        for i in 0..40 {
+            let low = dvec3(0.0, 0.0, f64::from(i));
+            mesh.append(cuboid(low, low + dvec3(1.0, 1.0, 0.5)).mesh());
+        }
+        let turn =
+            glam::DMat3::from_cols(dvec3(1., 1., 1.), dvec3(-1., 1., 0.), dvec3(0., -1., 1.));
+        let slanted =
+            Polyhedron::trusted(mesh).placed(&crate::geom::Placement::new(turn, DVec3::ZERO));
+        let soup = Soup::of(slanted.mesh());
+        assert_eq!(soup.cross_until(MOST_COMPARED, 1), Ok(vec![]));
+        assert_eq!(soup.cross_until(9, 1), Err(Tangled::Near { triangles: 480, limit: 9 }));
     }
 
     #[test]

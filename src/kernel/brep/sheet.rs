@@ -9,9 +9,9 @@ use thiserror::Error;
 
 use super::{
     Defect, Polyhedron,
-    boolean::{BooleanError, self_union},
+    boolean::{BooleanError, untangled},
     closing,
-    crossing::{crossing, is_hollow},
+    crossing::is_hollow,
 };
 use crate::geom::{CurvedGrid, Origin, PolyMesh, Surface};
 
@@ -268,9 +268,7 @@ impl Soup {
     fn closed(self) -> Result<Polyhedron, SheetError> {
         let mut mesh = self.mesh;
         mesh.drop_unused_points();
-        let solid = closing::close(&mesh)?;
-        let solid =
-            if crossing(solid.mesh()).is_some() { self_union(&solid)?.solid } else { solid };
+        let solid = untangled(closing::close(&mesh)?)?;
         if is_hollow(&solid) { Err(SheetError::Flat) } else { Ok(solid) }
     }
 }
@@ -282,6 +280,7 @@ mod tests {
     use glam::dvec3;
 
     use super::*;
+    use crate::kernel::brep::crossing::crossing;
     use crate::kernel::brep::measure::{genus, volume};
 
     fn grid(nu: usize, nv: usize, closed: [bool; 2], at: impl Fn(f64, f64) -> DVec3) -> CurvedGrid {
@@ -347,7 +346,7 @@ mod tests {
             dvec3(20.0 * sin, 14.0 * sin * cos, 10.0 * v)
         });
         let solid = thickened(&ribbon, 1.0).expect("a solid");
-        assert_eq!(crossing(solid.mesh()), None);
+        assert_eq!(crossing(solid.mesh()), Ok(None));
         assert!(volume(&solid) > 100.0);
     }
 }

@@ -22,7 +22,8 @@ fn angle() -> PolyMesh {
     let ring = |z: f64| outline.iter().map(move |&(x, y)| dvec3(x, y, z));
     let mut mesh = PolyMesh::with_points(ring(0.0).chain(ring(1.0)).collect());
     let plain = mesh.add_origin(Origin::of(Surface::Plane));
-    let red = Origin { surface: Surface::Plane, tags: vec![Arc::from("top")], color: Some(RED) };
+    let red =
+        Origin { tags: vec![Arc::from("top")], color: Some(RED), ..Origin::of(Surface::Plane) };
     let red = mesh.add_origin(red);
     let mut push = |face: &[u32], origin| {
         let plane = mesh.add_plane();

@@ -7,7 +7,7 @@ use katachi::{
     base::{Code, Diagnostic, FileError, Shelf, SourceMap, World},
     eval::{Evaluator, Host, InstanceId, Limits, Loaded, Override, library},
     geom::{
-        CurvedGrid, Raster,
+        Curve, CurvedGrid, Raster,
         isometric::{IsoDrawing, IsoScale},
     },
     shape::{
@@ -125,6 +125,15 @@ impl Geometry for Bench<'_> {
         p: DVec3,
     ) -> Result<f64, GeometryError> {
         Ok(p.length())
+    }
+
+    fn distance_to_curve(
+        &self,
+        _: &ShapeGraph,
+        _: ShapeId,
+        curve: &Curve,
+    ) -> Result<f64, GeometryError> {
+        Ok(curve.at(0.0).length())
     }
 
     fn distance(&self, _: &ShapeGraph, _: ShapeId, _: ShapeId) -> Result<f64, GeometryError> {

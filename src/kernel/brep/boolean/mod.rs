@@ -100,7 +100,12 @@ use self::{
     seed::Surroundings,
     space::Space,
 };
-use super::{polyhedron::Polyhedron, resolution::lost, threads};
+use super::{
+    crossing::{Tangled, is_crossed},
+    polyhedron::Polyhedron,
+    resolution::lost,
+    threads,
+};
 use crate::geom::{Placement, PolyMesh};
 
 /// A construction tree of solids.
@@ -169,6 +174,9 @@ pub enum BooleanError {
     /// More pieces than numbers.
     #[error("the operands of a set operation have more than {limit} corners together", limit = CORNERS)]
     TooLarge,
+    /// A surface to be freed of its crossings that has too many.
+    #[error(transparent)]
+    Tangled(#[from] Tangled),
 }
 
 /// Largest number of corners of all operands together: numbers of half-edges are 32 bits wide, and
@@ -230,6 +238,15 @@ pub fn self_union(solid: &Polyhedron) -> Result<Evaluated, BooleanError> {
     let tree = Tree::Union(vec![Tree::Leaf(Arc::new(solid.clone()))]);
     let plan = frame::plan(&tree, &Placement::IDENTITY)?;
     arranged(&plan, false, false)?.ok_or(BooleanError::NotClosed)
+}
+
+/// The solid as it is if its boundary does not cross itself, else what that [encloses](self_union). Fails where it
+/// crosses itself at more places than are united.
+pub fn untangled(solid: Polyhedron) -> Result<Polyhedron, BooleanError> {
+    match is_crossed(solid.mesh())? {
+        true => Ok(self_union(&solid)?.solid),
+        false => Ok(solid),
+    }
 }
 
 /// Evaluates a set operation whose result stands at `outer`.

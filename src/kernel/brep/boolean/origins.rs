@@ -131,8 +131,7 @@ impl<'a> Labels<'a> {
         let face = source.solid.mesh().face(face as usize);
         let origins = &mut self.origins;
         *self.numbers.entry((leaf, face.origin_index())).or_insert_with(|| {
-            let mut origin = face.origin().clone();
-            origin.surface = origin.surface.placed(&source.full);
+            let origin = face.origin().placed(&source.full);
             if origin.surface == Surface::Smooth {
                 origins.push(origin);
                 return origins.len() as u32 - 1;

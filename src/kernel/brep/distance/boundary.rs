@@ -83,6 +83,13 @@ impl Boundary {
         if distance > 0.0 && !self.contains(p) { -distance } else { distance }
     }
 
+    /// The least distance to a segment in mm; 0 where it passes through.
+    pub(super) fn distance_to_segment(&self, ends: [DVec3; 2]) -> f64 {
+        let square = |t: u32| beside(&ends, &self.triangles[t as usize]);
+        let found = self.tree.nearest(&Bounds::of(ends), f64::INFINITY, square);
+        found.map_or(f64::INFINITY, |(_, square)| square.sqrt())
+    }
+
     /// The least distance to another boundary in mm; 0 where they cross.
     pub fn distance(&self, other: &Boundary) -> f64 {
         let square =
@@ -103,6 +110,17 @@ fn apart(s: &[DVec3; 3], t: &[DVec3; 3]) -> f64 {
     let corners = t.iter().map(|p| corner(s, p)).chain(s.iter().map(|p| corner(t, p)));
     let pairs = edges(s).into_iter().flat_map(|e| edges(t).map(|f| of_segments(e, f)));
     corners.chain(pairs.map(|[p, q]| p.distance_squared(q))).fold(f64::INFINITY, f64::min)
+}
+
+/// The square of the distance of a segment and a triangle.
+fn beside(segment: &[DVec3; 2], t: &[DVec3; 3]) -> f64 {
+    if pierces(segment, t) {
+        return 0.0;
+    }
+    let ends = segment.iter().map(|p| on_triangle(*t, *p).distance_squared(*p));
+    let edges = [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]];
+    let pairs = edges.map(|edge| of_segments(*segment, edge));
+    ends.chain(pairs.map(|[p, q]| p.distance_squared(q))).fold(f64::INFINITY, f64::min)
 }
 
 /// Whether a segment passes through the inside of a triangle, exactly.

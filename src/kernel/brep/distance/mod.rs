@@ -1,11 +1,12 @@
-//! Distances between points, solids and boundaries, over a hierarchy of the boundary's triangles.
+//! Distances between points, curves, solids and boundaries, over a hierarchy of the boundary's triangles.
 
 mod boundary;
+mod curve;
 mod farthest;
 
 use glam::DVec3;
 
-pub use boundary::Boundary;
+pub use self::{boundary::Boundary, curve::curve};
 
 use self::farthest::{Between, farthest};
 use super::Polyhedron;

@@ -1,17 +1,19 @@
 //! A profile carried along one curve.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 
 use super::{
-    SweepError,
-    frames::{Frames, Stand},
-    rings::{Builder, Step, Swept},
+    MAX_FACETS, SweepError,
+    frames::{Course, Frames, Stand},
+    rings::{Builder, Part, Step, Swept},
     sound,
     stations::{Station, stations},
 };
 use crate::{
     geom::{
-        Contour, Curve, EdgeCurve, Region, Surface, Tolerance,
+        Contour, Curve, EdgeCurve, Form, Parametric, Region, Surface, Tolerance,
         curve::{Piece, PlaneError, Turn},
         sweep::{Corners, Frame, Repair},
         trig::{cos_deg, sin_deg},
@@ -81,19 +83,17 @@ pub fn along(
             &rounded
         }
     };
-    let way =
-        Way { region, sweep: Along { path, ..*sweep }, frames: Frames::new(path, sweep.frame)? };
-    way.solid(tolerance)
+    Way::new(region, Along { path, ..*sweep })?.solid(tolerance)
 }
 
 /// The path with arcs in its corners, so narrow that the innermost point of the profile stays where it is.
 fn round_corners(region: &Region, sweep: &Along) -> Result<Curve, SweepError> {
-    let way = Way { region, sweep: *sweep, frames: Frames::new(sweep.path, sweep.frame)? };
+    let way = Way::new(region, *sweep)?;
     let count = sweep.path.pieces().len();
     let mut reach = vec![0.0; count];
     for (joint, reach) in reach.iter_mut().enumerate() {
-        let before = way.frames.at((joint + count - 1) % count, 1.0)?;
-        let after = way.frames.at(joint, 0.0)?;
+        let before = way.course.frames.at((joint + count - 1) % count, 1.0)?;
+        let after = way.course.frames.at(joint, 0.0)?;
         let inwards = (after.tangent - before.tangent).normalize_or_zero();
         let inwards = DVec2::new(before.x.dot(inwards), before.y.dot(inwards)).normalize_or_zero();
         *reach = way.reach(joint as f64, inwards);
@@ -112,6 +112,9 @@ fn round_corners(region: &Region, sweep: &Along) -> Result<Curve, SweepError> {
 /// Lengths below this part of the size are none; points of a profile nearer than it are one.
 const ONE: f64 = 1e-9;
 
+/// Parts that a piece is cut into at first at most; a twist that needs more has more facets than are made.
+const MOST_PARTS: f64 = MAX_FACETS as f64;
+
 /// Places of a piece where a first look is taken at how it bends.
 const LOOKS: u32 = 16;
 
@@ -121,26 +124,33 @@ const LONGEST: f64 = 100.0;
 struct Way<'a> {
     region: &'a Region,
     sweep: Along<'a>,
-    frames: Frames<'a>,
+    course: Arc<Course>,
 }
 
-impl Way<'_> {
+impl<'a> Way<'a> {
+    fn new(region: &'a Region, sweep: Along<'a>) -> Result<Way<'a>, SweepError> {
+        let frames = Frames::new(sweep.path, sweep.frame)?;
+        let course = Arc::new(Course { frames, twist: sweep.twist, scale: sweep.scale });
+        Ok(Way { region, sweep, course })
+    }
+
     fn solid(&self, tolerance: Tolerance) -> Result<Polyhedron, SweepError> {
         let path = self.sweep.path;
-        let places: Vec<f64> = (0..=path.pieces().len()).map(|i| i as f64).collect();
         let points: Vec<DVec2> =
             self.region.contours().flat_map(|c| c.points.iter().copied()).collect();
         // Folds would ask for stations without end: first those that a rough look finds.
         let rough =
             (0..path.pieces().len() as u32 * LOOKS).map(|i| f64::from(i) / f64::from(LOOKS));
         self.check_bends(rough)?;
-        let all = stations_of(self, &places, &points, tolerance)?;
+        let all = stations_of(self, &points, tolerance)?;
         self.check_bends(all.iter().map(|station| station.place))?;
         let size = path.length() + points.iter().map(|p| p.length()).fold(0.0, f64::max);
         let runs = self.runs();
         let steps: Vec<Step> = all.windows(2).map(|pair| self.step(&runs, pair)).collect();
         let surface = |run: usize, curve: EdgeCurve| self.surface(&runs, run, curve);
-        let mut builder = Builder::new(size, &surface);
+        let contours: Vec<&Contour> = self.region.contours().collect();
+        let form = |part: &Part| Some(self.form(&runs, contours[part.contour], part));
+        let mut builder = Builder::new(size, &surface, &form);
         let mut first = 0;
         for piece in &self.region.pieces {
             let mut ends = [vec![], vec![]];
@@ -171,28 +181,27 @@ impl Way<'_> {
         sound(builder.solid(), self.sweep.repair, way)
     }
 
-    /// Where the profile stands at a place; at a joint as it leaves the piece before, or starts the next one.
-    fn stand(&self, piece: usize, s: f64) -> Result<(Stand, f64), SweepError> {
-        let Along { path, twist, scale, .. } = self.sweep;
-        let stand = self.frames.at(piece, s)?;
-        if twist == 0.0 && scale == 1.0 {
-            return Ok((stand, 1.0));
-        }
-        let part = path.part(piece as f64 + s);
-        Ok((stand.turned(twist * part), 1.0 + (scale - 1.0) * part))
+    /// Places of a piece between which it turns by a quarter at most, and so does the twist.
+    fn plain_places(&self, piece: usize) -> Vec<f64> {
+        let Along { path, twist, .. } = self.sweep;
+        let from = piece as f64;
+        let share = path.part(from + 1.0) - path.part(from);
+        let twists = (twist * share / 90.0).abs().ceil().min(MOST_PARTS) as u32;
+        let count = path.pieces()[piece].plain_parts().max(twists);
+        (0..=count).map(|k| from + f64::from(k) / f64::from(count)).collect()
     }
 
     /// Points of the profile at a place.
     fn ring(&self, piece: usize, s: f64, points: &[DVec2]) -> Result<Vec<DVec3>, SweepError> {
-        let (stand, size) = self.stand(piece, s)?;
+        let (stand, size) = self.course.stand(piece, s)?;
         Ok(points.iter().map(|p| stand.place(*p * size)).collect())
     }
 
     /// Points of the profile where two pieces meet in a corner: in the plane half-way between them.
     fn mitre(&self, joint: usize, points: &[DVec2]) -> Result<Vec<DVec3>, SweepError> {
         let count = self.sweep.path.pieces().len();
-        let (before, size) = self.stand((joint + count - 1) % count, 1.0)?;
-        let after = self.frames.at(joint % count, 0.0)?.tangent;
+        let (before, size) = self.course.stand((joint + count - 1) % count, 1.0)?;
+        let after = self.course.frames.at(joint % count, 0.0)?.tangent;
         let normal = before.tangent + after;
         let slope = normal.dot(before.tangent);
         if slope * LONGEST <= normal.length() {
@@ -231,7 +240,7 @@ impl Way<'_> {
             if curvature == DVec3::ZERO {
                 continue;
             }
-            let stand = self.frames.at(piece, s)?;
+            let stand = self.course.frames.at(piece, s)?;
             let inwards = DVec2::new(stand.x.dot(curvature), stand.y.dot(curvature));
             let reach = self.reach(place, inwards.normalize_or_zero());
             if reach * inwards.length() > 1.0 + ONE {
@@ -250,8 +259,8 @@ impl Way<'_> {
         let last = path.pieces().len() - 1;
         let end = match self.is_corner(0) {
             true => {
-                let (stand, size) = self.stand(last, 1.0)?;
-                let first = self.frames.at(0, 0.0)?;
+                let (stand, size) = self.course.stand(last, 1.0)?;
+                let first = self.course.frames.at(0, 0.0)?;
                 let turn = |v| super::frames::smallest_turn(stand.tangent, first.tangent, v);
                 let stand = Stand { x: turn(stand.x), y: turn(stand.y), ..stand };
                 points.iter().map(|p| stand.place(*p * size)).collect()
@@ -289,7 +298,7 @@ impl Way<'_> {
     fn is_straight(&self, piece: usize) -> bool {
         let Along { path, twist, scale, .. } = self.sweep;
         let line = matches!(path.pieces()[piece], Piece::Line(_));
-        line && twist == 0.0 && scale == 1.0 && self.frames.is_still()
+        line && twist == 0.0 && scale == 1.0 && self.course.frames.is_still()
     }
 
     /// What a curve of the profile sweeps in a run.
@@ -300,9 +309,23 @@ impl Way<'_> {
         known.unwrap_or(Surface::Smooth)
     }
 
+    /// The parameter surface of edges that are carried along a run.
+    fn form(&self, runs: &[usize], contour: &Contour, part: &Part) -> Form {
+        let count = contour.points.len();
+        let last = (part.edges[part.edges.len() - 1] + 1) % count;
+        let corners = part.edges.iter().chain([&last]);
+        let line = corners.map(|i| contour.points[*i]).collect();
+        let pieces: Vec<usize> = (0..runs.len()).filter(|i| runs[*i] == part.run).collect();
+        // A run over the start of a closed path begins where it is left before the end.
+        let first = (0..pieces.len()).find(|&i| i > 0 && pieces[i] != pieces[i - 1] + 1);
+        let mut pieces = pieces;
+        pieces.rotate_left(first.unwrap_or(0));
+        Form::new(Arc::new(Carried { course: self.course.clone(), line, pieces }))
+    }
+
     /// What a curve sweeps along one piece, if that has a form of its own.
     fn known_surface(&self, piece: usize, curve: EdgeCurve) -> Option<Surface> {
-        let stand = self.frames.at(piece, 0.0).ok()?;
+        let stand = self.course.frames.at(piece, 0.0).ok()?;
         if self.is_straight(piece) {
             return match curve {
                 EdgeCurve::Line => Some(Surface::Plane),
@@ -321,6 +344,27 @@ impl Way<'_> {
             }
             _ => None,
         }
+    }
+}
+
+/// Edges of a profile carried along pieces of a path.
+#[derive(Debug)]
+struct Carried {
+    course: Arc<Course>,
+    /// Corners that follow one another.
+    line: Vec<DVec2>,
+    /// Pieces that follow one another smoothly.
+    pieces: Vec<usize>,
+}
+
+impl Parametric for Carried {
+    fn at(&self, u: f64, v: f64) -> DVec3 {
+        let (edge, share) = split(u * (self.line.len() - 1) as f64, self.line.len() - 1);
+        let p = self.line[edge].lerp(self.line[edge + 1], share);
+        let (piece, s) = split(v * self.pieces.len() as f64, self.pieces.len());
+        // The boundary was made of the same stands: none of them fails.
+        let stand = self.course.stand(self.pieces[piece], s);
+        stand.map_or(DVec3::ZERO, |(stand, size)| stand.place(p * size))
     }
 }
 
@@ -346,15 +390,14 @@ fn split(place: f64, count: usize) -> (usize, f64) {
 /// The stations along a way: as close as each piece needs, and in the planes of mitres at corners.
 fn stations_of(
     way: &Way,
-    places: &[f64],
     points: &[DVec2],
     tolerance: Tolerance,
 ) -> Result<Vec<Station>, SweepError> {
-    let count = places.len() - 1;
+    let count = way.sweep.path.pieces().len();
     let mut all: Vec<Station> = vec![];
     for piece in 0..count {
         let ring = |place: f64| way.ring(piece, place - piece as f64, points);
-        let found = stations(&places[piece..=piece + 1], true, tolerance, &ring)?;
+        let found = stations(&way.plain_places(piece), true, tolerance, &ring)?;
         all.extend(found.into_iter().skip(usize::from(piece > 0)));
     }
     let closed = way.sweep.path.is_closed();

@@ -32,9 +32,17 @@ pub fn coons(curves: [&Curve; 4], tolerance: Tolerance) -> Result<CurvedGrid, Sw
     let across = patch.sides[1].breaks(&patch.sides[3]);
     let along = patch.sides[0].breaks(&patch.sides[2]);
     // First the places along the rows, judged on all four curves' own breaks across; then the rows.
-    let column = |u: f64| Ok(across_points(&across).map(|v| patch.at(u, v)).collect());
-    let us: Vec<f64> = stations(&along, false, half, &column)?.iter().map(|s| s.place).collect();
-    let row = |v: f64| Ok(us.iter().map(|&u| patch.at(u, v)).collect());
+    let looks: Vec<Pair> = across_points(&across).map(|v| patch.across(v)).collect();
+    let column = |u: f64| {
+        let own = patch.along(u);
+        Ok(looks.iter().map(|other| patch.blend(&own, other)).collect())
+    };
+    let columns: Vec<Pair> =
+        stations(&along, false, half, &column)?.iter().map(|s| patch.along(s.place)).collect();
+    let row = |v: f64| {
+        let own = patch.across(v);
+        Ok(columns.iter().map(|other| patch.blend(other, &own)).collect())
+    };
     let rows = stations(&across, false, half, &row)?;
     let rows: Vec<Vec<DVec3>> = rows.into_iter().map(|station| station.points).collect();
     Ok(CurvedGrid::new(&rows, false, false)?)
@@ -68,15 +76,16 @@ impl Side {
         }
     }
 
-    /// Where pieces of this side and the opposite one end.
+    /// Where pieces of this side and the opposite one end, and quarters of turns.
     fn breaks(&self, other: &Side) -> Vec<f64> {
         let own = |side: &Side| -> Vec<f64> {
             let count = side.curve.pieces().len();
-            let part = |i: usize| match side.by_length {
-                true => side.curve.part(i as f64),
-                false => i as f64 / count as f64,
+            let part = |place: f64| match side.by_length {
+                true => side.curve.part(place),
+                false => place / count as f64,
             };
-            (1..count).map(part).collect()
+            let places = side.curve.plain_places();
+            places[1..places.len() - 1].iter().map(|place| part(*place)).collect()
         };
         let mut breaks: Vec<f64> =
             [0.0, 1.0].into_iter().chain(own(self)).chain(own(other)).collect();
@@ -89,6 +98,8 @@ impl Side {
 /// Four sides: the first and the third run one way, the second and the fourth the other.
 struct Patch {
     sides: [Side; 4],
+    /// Around it, from the start of the first.
+    corners: [DVec3; 4],
 }
 
 impl Patch {
@@ -119,21 +130,39 @@ impl Patch {
         let by_length = [differ(&around[0], &third), differ(&around[1], &fourth)];
         let [first, second] = [around[0].clone(), around[1].clone()];
         let side = |curve: Curve, by_length: bool| Side { curve, by_length };
-        Ok(Patch {
-            sides: [
-                side(first, by_length[0]),
-                side(second, by_length[1]),
-                side(third, by_length[0]),
-                side(fourth, by_length[1]),
-            ],
-        })
+        let sides = [
+            side(first, by_length[0]),
+            side(second, by_length[1]),
+            side(third, by_length[0]),
+            side(fourth, by_length[1]),
+        ];
+        let [low, high] = [0, 2].map(|i: usize| [0.0, 1.0].map(|u| sides[i].at(u)));
+        Ok(Patch { sides, corners: [low[0], low[1], high[1], high[0]] })
+    }
+
+    /// The points of the first and the third side.
+    fn along(&self, u: f64) -> Pair {
+        Pair { part: u, points: [self.sides[0].at(u), self.sides[2].at(u)] }
+    }
+
+    /// The points of the fourth and the second side.
+    fn across(&self, v: f64) -> Pair {
+        Pair { part: v, points: [self.sides[3].at(v), self.sides[1].at(v)] }
     }
 
     /// Coons's sum: u along the first side, v along the second.
-    fn at(&self, u: f64, v: f64) -> DVec3 {
-        let [low, right, high, left] = &self.sides;
-        let ruled = low.at(u).lerp(high.at(u), v) + left.at(v).lerp(right.at(v), u);
-        let corners = [low.at(0.0), low.at(1.0), high.at(1.0), high.at(0.0)];
-        ruled - corners[0].lerp(corners[1], u).lerp(corners[3].lerp(corners[2], u), v)
+    fn blend(&self, along: &Pair, across: &Pair) -> DVec3 {
+        let (u, v) = (along.part, across.part);
+        let [low, high] = along.points;
+        let [left, right] = across.points;
+        let [a, b, c, d] = self.corners;
+        let ruled = low.lerp(high, v) + left.lerp(right, u);
+        ruled - a.lerp(b, u).lerp(d.lerp(c, u), v)
     }
+}
+
+/// A part of two opposite sides, and their points there.
+struct Pair {
+    part: f64,
+    points: [DVec3; 2],
 }

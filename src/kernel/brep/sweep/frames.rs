@@ -4,6 +4,8 @@
 //! W. Wang, B. Jüttler, D. Zheng, Y. Liu: *Computation of rotation minimizing frames*, 2008: two reflections carry a frame
 //! from point to point with an error of the fourth power of the step.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 
 use super::SweepError;
@@ -81,8 +83,9 @@ const STEPS: u32 = 48;
 const STEP: f64 = 5.0;
 
 /// The stands along a path.
-pub(super) struct Frames<'a> {
-    path: &'a Curve,
+#[derive(Debug)]
+pub(super) struct Frames {
+    path: Arc<Curve>,
     frame: Frame,
     /// Of each piece the stands at equal steps.
     known: Vec<Vec<Stand>>,
@@ -90,9 +93,10 @@ pub(super) struct Frames<'a> {
     excess: f64,
 }
 
-impl Frames<'_> {
-    pub fn new(path: &Curve, frame: Frame) -> Result<Frames<'_>, SweepError> {
-        let mut frames = Frames { path, frame, known: vec![], excess: 0.0 };
+impl Frames {
+    pub fn new(path: &Curve, frame: Frame) -> Result<Frames, SweepError> {
+        let own = Arc::new(path.clone());
+        let mut frames = Frames { path: own, frame, known: vec![], excess: 0.0 };
         let tangent = direction(&path.pieces()[0], 0.0)?;
         let start = upright(path.at(0.0), tangent).unwrap_or_else(|| level(path.at(0.0), tangent));
         let mut stand = start;
@@ -155,6 +159,28 @@ impl Frames<'_> {
             Frame::Upright => upright(origin, tangent)
                 .ok_or(SweepError::Frameless { what: "upright", at: origin }),
         }
+    }
+}
+
+/// Frames with a twist and a scale.
+#[derive(Debug)]
+pub(super) struct Course {
+    pub frames: Frames,
+    /// Degrees over the whole path.
+    pub twist: f64,
+    /// Size at the end.
+    pub scale: f64,
+}
+
+impl Course {
+    /// Where the profile stands on a piece, s from 0 to 1, and its size there.
+    pub fn stand(&self, piece: usize, s: f64) -> Result<(Stand, f64), SweepError> {
+        let stand = self.frames.at(piece, s)?;
+        if self.twist == 0.0 && self.scale == 1.0 {
+            return Ok((stand, 1.0));
+        }
+        let part = self.frames.path.part(piece as f64 + s);
+        Ok((stand.turned(self.twist * part), 1.0 + (self.scale - 1.0) * part))
     }
 }
 

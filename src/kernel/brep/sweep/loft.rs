@@ -1,16 +1,18 @@
 //! Bodies through sections.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::{
     SweepError,
-    rings::{Builder, Step, Swept},
+    rings::{Builder, Part, Step, Swept},
     sections::{Alike, Placed, alike},
     sound,
     stations::{Station, stations},
 };
 use crate::{
-    geom::{Surface, Tolerance, curve::slopes, sweep::Repair},
+    geom::{Form, Parametric, Surface, Tolerance, curve::slopes, sweep::Repair},
     kernel::brep::Polyhedron,
 };
 
@@ -47,12 +49,19 @@ pub fn loft(
         return Err(SweepError::Sections { found: sections.len(), needed: 2 });
     }
     let contours = alike(sections, &directions(sections))?;
-    let skins: Vec<Skin> =
-        contours.iter().map(|contour| Skin::new(contour.rings.clone(), ruled)).collect();
+    let skin = |contour: &Alike| Arc::new(Skin::new(contour.rings.clone(), ruled));
+    let skins: Vec<Arc<Skin>> = contours.iter().map(skin).collect();
     let steps: Vec<f64> = (0..sections.len()).map(|i| i as f64).collect();
     let ring = |place: f64| Ok(skins.iter().flat_map(|skin| skin.at(place)).collect());
     let all = stations(&steps, true, tolerance, &ring)?;
-    let solid = body(&contours, &all, !ruled, false);
+    let last = sections.len() - 1;
+    let form = |part: &Part| {
+        let skin = skins[part.contour].clone();
+        let columns = columns(&part.edges, contours[part.contour].curves.len());
+        let steps = if ruled { [part.run, part.run + 1] } else { [0, last] };
+        Some(Form::new(Arc::new(Lofted { skin, columns, steps: steps.map(|i| i as f64) })))
+    };
+    let solid = body(&contours, &all, [!ruled, false], &form);
     let way = sections
         .iter()
         .zip(0..)
@@ -80,13 +89,42 @@ fn directions(sections: &[Placed]) -> Vec<DVec3> {
 /// A step runs along a section when the sine of the angle between them is below this.
 const LEVEL: f64 = 1e-6;
 
-/// The solid of contours whose points at all stations stand one contour after the other. Unless it is `smooth` there is an
+/// The corners of edges that follow one another around so many corners.
+pub(super) fn columns(edges: &[usize], count: usize) -> Vec<usize> {
+    let last = edges.last().map(|last| (last + 1) % count);
+    edges.iter().copied().chain(last).collect()
+}
+
+/// A point between those of some columns, at a part of the way from the first to the last.
+pub(super) fn between_columns(columns: &[usize], u: f64, point: impl Fn(usize) -> DVec3) -> DVec3 {
+    let steps = columns.len() - 1;
+    let along = u * steps as f64;
+    let i = (along as usize).min(steps - 1);
+    point(columns[i]).lerp(point(columns[i + 1]), along - i as f64)
+}
+
+/// Columns of a loft over a part of its way.
+#[derive(Debug)]
+struct Lofted {
+    skin: Arc<Skin>,
+    columns: Vec<usize>,
+    steps: [f64; 2],
+}
+
+impl Parametric for Lofted {
+    fn at(&self, u: f64, v: f64) -> DVec3 {
+        let place = self.steps[0] + (self.steps[1] - self.steps[0]) * v;
+        between_columns(&self.columns, u, |j| self.skin.point(j, place))
+    }
+}
+
+/// The solid of contours whose points at all stations stand one contour after the other. Unless it is smooth there is an
 /// edge at every whole place. A closed one ends where it starts and has no ends.
 pub(super) fn body(
     contours: &[Alike],
     all: &[Station],
-    is_smooth: bool,
-    is_closed: bool,
+    [is_smooth, is_closed]: [bool; 2],
+    form: &dyn Fn(&Part) -> Option<Form>,
 ) -> Polyhedron {
     let size = all.iter().flat_map(|s| &s.points).fold(0.0, |size: f64, p| size.max(p.length()));
     let steps: Vec<Step> = all
@@ -96,7 +134,7 @@ pub(super) fn body(
             Step { run: if is_smooth { 0 } else { middle as usize }, is_flat: false }
         })
         .collect();
-    let mut builder = Builder::new(size, &|_, _| Surface::Smooth);
+    let mut builder = Builder::new(size, &|_, _| Surface::Smooth, form);
     let mut first = 0;
     let mut ends: [Vec<Vec<u32>>; 2] = Default::default();
     for contour in contours {
@@ -127,6 +165,7 @@ fn cap(builder: &mut Builder, [start, end]: [Vec<Vec<u32>>; 2]) {
 }
 
 /// Rings of points with a curve through the points of each number.
+#[derive(Debug)]
 pub(super) struct Skin {
     rings: Vec<Vec<DVec3>>,
     /// For each ring the slope of each point over the steps; none where it is ruled.
@@ -157,20 +196,22 @@ impl Skin {
 
     /// The points at a place: ring 1 and three quarters is 1.75.
     pub fn at(&self, place: f64) -> Vec<DVec3> {
+        (0..self.rings[0].len()).map(|j| self.point(j, place)).collect()
+    }
+
+    /// The point with a number at a place.
+    fn point(&self, j: usize, place: f64) -> DVec3 {
         let i = (place as usize).min(self.rings.len() - 2);
         let t = place - i as f64;
-        let (a, b) = (&self.rings[i], &self.rings[i + 1]);
+        let (a, b) = (self.rings[i][j], self.rings[i + 1][j]);
         if t == 0.0 || t == 1.0 {
-            return if t == 0.0 { a.clone() } else { b.clone() };
+            return if t == 0.0 { a } else { b };
         }
-        let straight = || a.iter().zip(b).map(|(a, b)| a.lerp(*b, t));
-        let Some(slopes) = &self.slopes else { return straight().collect() };
+        let straight = a.lerp(b, t);
+        let Some(slopes) = &self.slopes else { return straight };
         // Hermite's form: the line between the ends and what the slopes differ from it.
-        let (u, h) = (1.0 - t, self.steps[i]);
-        let bend = |j: usize| {
-            let chord = b[j] - a[j];
-            ((slopes[i][j] * h - chord) * u - (slopes[i + 1][j] * h - chord) * t) * (t * u)
-        };
-        straight().enumerate().map(|(j, p)| p + bend(j)).collect()
+        let (u, h, chord) = (1.0 - t, self.steps[i], b - a);
+        let bend = (slopes[i][j] * h - chord) * u - (slopes[i + 1][j] * h - chord) * t;
+        straight + bend * (t * u)
     }
 }

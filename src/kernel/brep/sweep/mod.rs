@@ -32,8 +32,8 @@ pub use self::{
 };
 use super::{
     Polyhedron,
-    boolean::{BooleanError, self_union},
-    crossing::crossing,
+    boolean::{BooleanError, untangled},
+    crossing::{Tangled, crossing},
 };
 use crate::geom::{GridError, sweep::Repair};
 
@@ -169,6 +169,9 @@ pub enum SweepError {
     /// A surface that is no grid.
     #[error(transparent)]
     Grid(#[from] GridError),
+    /// Whether it crosses itself is not found out.
+    #[error("whether the sweep crosses itself would take too long to find out: {0}")]
+    Tangled(#[from] Tangled),
     /// What crosses itself could not be united.
     #[error("the sweep crosses itself: {0}")]
     Union(#[from] BooleanError),
@@ -190,10 +193,12 @@ fn sound(
     repair: Repair,
     way: impl Iterator<Item = (f64, DVec3)>,
 ) -> Result<Polyhedron, SweepError> {
-    let Some(at) = crossing(solid.mesh()) else { return Ok(solid) };
     match repair {
-        Repair::Union => Ok(self_union(&solid)?.solid),
-        Repair::No => Err(SweepError::Crossing { at, parts: nearest_parts(way, at) }),
+        Repair::Union => Ok(untangled(solid)?),
+        Repair::No => match crossing(solid.mesh())? {
+            Some(at) => Err(SweepError::Crossing { at, parts: nearest_parts(way, at) }),
+            None => Ok(solid),
+        },
     }
 }
 

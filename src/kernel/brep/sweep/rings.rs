@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::stations::Station;
 use crate::{
-    geom::{EdgeCurve, Origin, PolyMesh, Surface},
+    geom::{EdgeCurve, Form, Origin, PolyMesh, Surface},
     kernel::brep::{Polyhedron, band::add_point},
 };
 
@@ -50,12 +50,28 @@ pub(super) struct Builder<'a> {
     size: f64,
     /// What a curve sweeps in a run.
     surface: &'a dyn Fn(usize, EdgeCurve) -> Surface,
+    /// The parameter surface of that.
+    form: &'a dyn Fn(&Part) -> Option<Form>,
+}
+
+/// What sweeps one surface: edges of a contour over a run of steps.
+pub(super) struct Part {
+    /// The number of the contour.
+    pub contour: usize,
+    /// The edges, which follow one another, each from its corner.
+    pub edges: Vec<usize>,
+    /// The run.
+    pub run: usize,
 }
 
 impl<'a> Builder<'a> {
-    pub fn new(size: f64, surface: &'a dyn Fn(usize, EdgeCurve) -> Surface) -> Builder<'a> {
+    pub fn new(
+        size: f64,
+        surface: &'a dyn Fn(usize, EdgeCurve) -> Surface,
+        form: &'a dyn Fn(&Part) -> Option<Form>,
+    ) -> Builder<'a> {
         let (mesh, origins) = (PolyMesh::default(), BTreeMap::new());
-        Builder { mesh, origins, flat: None, contours: 0, size, surface }
+        Builder { mesh, origins, flat: None, contours: 0, size, surface, form }
     }
 
     /// Adds the facets of a contour, and gives its first and last ring.
@@ -97,10 +113,10 @@ impl<'a> Builder<'a> {
     }
 
     fn facets(&mut self, [lower, upper]: [&[u32]; 2], curves: &[EdgeCurve], step: Step) {
-        for (j, &curve) in curves.iter().enumerate() {
+        for j in 0..curves.len() {
             let k = (j + 1) % curves.len();
             let corners = [lower[j], lower[k], upper[k], upper[j]];
-            let origin = self.origin(j, curve, step);
+            let origin = self.origin(j, curves, step);
             let mut apart = corners.to_vec();
             apart.dedup();
             if apart.len() > 1 && apart[0] == apart[apart.len() - 1] {
@@ -125,20 +141,19 @@ impl<'a> Builder<'a> {
         self.mesh.push_face(&[corners], plane, origin);
     }
 
-    fn origin(&mut self, edge: usize, curve: EdgeCurve, step: Step) -> u32 {
+    fn origin(&mut self, edge: usize, curves: &[EdgeCurve], step: Step) -> u32 {
+        let curve = curves[edge];
         let surface = (self.surface)(step.run, curve);
         if surface == Surface::Plane {
             return self.flat();
         }
-        let edge = match curve {
-            EdgeCurve::Line => (0, [edge as u64, 0, 0]),
-            EdgeCurve::Circle { center, radius } => {
-                (1, [center.x, center.y, radius].map(f64::to_bits))
-            }
-            EdgeCurve::Smooth(number) => (2, [u64::from(number), 0, 0]),
-        };
-        let key = Key { contour: self.contours, edge, run: step.run };
-        *self.origins.entry(key).or_insert_with(|| self.mesh.add_origin(Origin::of(surface)))
+        let key = Key { contour: self.contours, edge: number(edge, curve), run: step.run };
+        let (mesh, form) = (&mut self.mesh, self.form);
+        *self.origins.entry(key).or_insert_with(|| {
+            let part = || Part { contour: key.contour, edges: chain(edge, curves), run: key.run };
+            let form = if surface == Surface::Smooth { form(&part()) } else { None };
+            mesh.add_origin(Origin { form, ..Origin::of(surface) })
+        })
     }
 
     fn flat(&mut self) -> u32 {
@@ -164,4 +179,23 @@ impl<'a> Builder<'a> {
     pub fn solid(self) -> Polyhedron {
         Polyhedron::trusted(self.mesh)
     }
+}
+
+/// What tells an edge, or the curve that it is of, from others of its contour.
+fn number(edge: usize, curve: EdgeCurve) -> (u8, [u64; 3]) {
+    match curve {
+        EdgeCurve::Line => (0, [edge as u64, 0, 0]),
+        EdgeCurve::Circle { center, radius } => (1, [center.x, center.y, radius].map(f64::to_bits)),
+        EdgeCurve::Smooth(number) => (2, [u64::from(number), 0, 0]),
+    }
+}
+
+/// The edges around one that are of the same curve, in order.
+fn chain(edge: usize, curves: &[EdgeCurve]) -> Vec<usize> {
+    let count = curves.len();
+    let own = number(edge, curves[edge]);
+    let same = |i: usize| number(i % count, curves[i % count]) == own;
+    let back = (1..count).take_while(|k| same(edge + count - k)).count();
+    let ahead = (1..count - back).take_while(|k| same(edge + k)).count();
+    (0..=back + ahead).map(|k| (edge + count - back + k) % count).collect()
 }

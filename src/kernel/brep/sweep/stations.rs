@@ -20,7 +20,8 @@ const DEEPEST: u32 = 12;
 const LOOKS: [f64; 3] = [0.5, 0.25, 0.75];
 
 /// Stations from place to place, the first and the last included, so that facets between them keep within the tolerance of
-/// the surface. `ring` gives the points at a place, always as many; a closed ring's last point joins its first. Points of
+/// the surface. Between two places given the surface must be so plain that it is not on the chord at all quarters of the way
+/// unless it is straight. `ring` gives the points at a place, always as many; a closed ring's last point joins its first. Points of
 /// one edge lie on a straight line at every place.
 pub(super) fn stations(
     places: &[f64],

@@ -90,7 +90,7 @@ fn bends_and_crossings_are_told() {
     let way = ring(10.0, 1.0, 720.0);
     let repaired = Along { repair: Repair::Union, ..Along::path(&way) };
     let solid = along(&square(1.0), &repaired, fine(0.1)).expect("united");
-    assert!(crossing(solid.mesh()).is_none());
+    assert_eq!(crossing(solid.mesh()), Ok(None));
     let cross = [
         dvec3(0., 0., 0.),
         dvec3(20., 0., 0.),
@@ -257,10 +257,23 @@ fn turned_rails_make_a_body_of_revolution() {
     };
     let way = Between { rails: [&a, &b], stations: Stations::Through, repair: Repair::No };
     let exact = PI * 7.0 * 4.0;
-    for mm in [0.1, 0.01, 0.001] {
+    let area = PI * 7.0 * 8.0;
+    let mut before: Option<(f64, usize)> = None;
+    for mm in [0.16, 0.04, 0.01, 0.0025, 0.000_625] {
         let solid = between(&[upright(1.0), upright(-1.0)], &way, fine(mm)).expect("half a ring");
-        let off = volume(&solid) / exact - 1.0;
-        assert!(off <= 1e-9 && off.abs() < mm / 4.0, "{mm}: {off}");
+        for p in &solid.mesh().points {
+            let off = (libm::hypot(p.x, p.y) - 7.0).abs().max(p.z.abs()) - 1.0;
+            assert!(off.abs() < 1e-9, "a corner of the square is {off} off its circle");
+        }
+        let (off, faces) = (exact - volume(&solid), solid.mesh().face_count());
+        assert!(off > 0.0 && off < area * mm, "{mm}: {off}");
+        // About twice the steps, and an error that falls with their square.
+        if let Some((last, count)) = before {
+            let (steps, errors) = (faces as f64 / count as f64, last / off);
+            assert!((1.5..4.5).contains(&steps), "{mm}: {steps}");
+            assert!((errors / (steps * steps) - 1.0).abs() < 0.25, "{mm}: {errors} {steps}");
+        }
+        before = Some((off, faces));
     }
 }
 
