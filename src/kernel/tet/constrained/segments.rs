@@ -111,7 +111,8 @@ impl Work {
             return None;
         }
         let length = (q - p).length();
-        let shell = 2f64.powf((length / 2.0).log2().round()) / length;
+        // The power of two nearest to half the length.
+        let shell = libm::ldexp(1.0, libm::log2(length / 2.0).round() as i32) / length;
         let share = match (acute.contains(&a), acute.contains(&b)) {
             (true, false) => shell,
             (false, true) => 1.0 - shell,
