@@ -239,13 +239,17 @@ impl Piece {
 
     /// Its length in mm up to s: closed forms for lines, circles and helices, else by quadrature to 1e-13.
     pub fn length(&self, s: f64) -> f64 {
+        self.length_between(0.0, s)
+    }
+
+    fn length_between(&self, from: f64, to: f64) -> f64 {
         match self {
-            Piece::Line([a, b]) => a.distance(*b) * s,
-            Piece::Turn(turn) if turn.is_circular() => turn.jet(0.0).first.length() * s,
+            Piece::Line([a, b]) => a.distance(*b) * (to - from),
+            Piece::Turn(turn) if turn.is_circular() => turn.jet(0.0).first.length() * (to - from),
             _ => {
-                let whole = gauss(self, 0.0, s);
+                let whole = gauss(self, from, to);
                 let enough = LENGTH * whole + NOISE * self.farthest();
-                integral(self, [0.0, s], whole, (enough, DEEPEST))
+                integral(self, [from, to], whole, (enough, DEEPEST))
             }
         }
     }
@@ -260,16 +264,19 @@ impl Piece {
             return 1.0;
         }
         let (mut low, mut high, mut s) = (0.0, 1.0, wanted / whole);
+        // The length up to `low`; only what is beyond is measured again.
+        let mut below = 0.0;
         let rounding = EXACT * whole + NOISE * self.farthest();
         for _ in 0..MOST_STEPS {
-            let wrong = self.length(s) - wanted;
+            let found = below + self.length_between(low, s);
+            let wrong = found - wanted;
             if wrong.abs() <= rounding {
                 break;
             }
             if wrong > 0.0 {
-                high = s
+                high = s;
             } else {
-                low = s
+                (low, below) = (s, found);
             }
             let step = s - wrong / self.jet(s).first.length();
             s = if step > low && step < high { step } else { (low + high) / 2.0 };
