@@ -207,8 +207,7 @@ pub fn evaluate(tree: &Tree) -> Result<Evaluated, BooleanError> {
     let work = || evaluate_at(tree, &Placement::IDENTITY);
     let [leaves, corners] = tree.size();
     match (leaves, corners) {
-        (MANY.., _) => threads::crew(work),
-        (_, LARGE..) => threads::pooled(work),
+        (MANY.., _) | (_, LARGE..) => threads::crew(work),
         _ => work(),
     }
 }
