@@ -5,8 +5,8 @@
 //!
 //! A thread of a pool that has slept for a while is woken on the processor of the one that wakes it where the
 //! scheduler cannot tell whether another processor is free, as in many virtual machines; both then share one for
-//! milliseconds. New threads are started where least is going on. So large work gets a pool of new threads, at 0.1 ms,
-//! rather than those that have slept.
+//! milliseconds. New threads are started where least is going on. So long work that falls apart into large pieces at
+//! once gets a pool of new threads, at 0.1 ms, rather than those that have slept.
 
 use rayon::{ThreadBuilder, ThreadPool, ThreadPoolBuilder, prelude::*};
 
@@ -43,7 +43,7 @@ pub(super) fn both<A: Send, B: Send>(
 }
 
 /// Does work in the pool at hand.
-fn pooled<R: Send>(work: impl Fn() -> R + Sync) -> R {
+pub(super) fn pooled<R: Send>(work: impl Fn() -> R + Sync) -> R {
     // Tasks are handed over faster among the threads of a pool than from outside.
     rayon::scope(|_| work())
 }

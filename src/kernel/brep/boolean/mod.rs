@@ -207,7 +207,8 @@ pub fn evaluate(tree: &Tree) -> Result<Evaluated, BooleanError> {
     let work = || evaluate_at(tree, &Placement::IDENTITY);
     let [leaves, corners] = tree.size();
     match (leaves, corners) {
-        (MANY.., _) | (_, LARGE..) => threads::crew(work),
+        (MANY.., _) => threads::crew(work),
+        (_, LARGE..) => threads::pooled(work),
         _ => work(),
     }
 }
