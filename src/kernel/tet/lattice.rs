@@ -40,6 +40,11 @@ impl Lattice {
     pub(super) fn place(&self, point: DVec3) -> DVec3 {
         point / FINE * self.step + self.centre
     }
+
+    /// The largest coordinate of its middle in mm.
+    pub(super) fn reach(&self) -> f64 {
+        self.centre.abs().max_element()
+    }
 }
 
 /// The smallest power of two that is not below; of zero the smallest normal float.

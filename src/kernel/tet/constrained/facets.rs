@@ -99,14 +99,9 @@ pub(super) fn apex(triangle: [u32; 3], points: &[DVec3]) -> Option<DVec3> {
     /// How far, in steps of the fine lattice.
     const FAR: f64 = (1u64 << 40) as f64;
     let [a, b, c] = triangle.map(|i| points[i as usize]);
-    DVec3::AXES.into_iter().find_map(|axis| {
-        // Towards the middle of the lattice, to stay inside of it.
-        let away = if a.dot(axis) > 0.0 { -FAR } else { FAR };
-        match volume_sign(a, b, c, a + axis * away) {
-            0 => None,
-            1 => Some(a + axis * away),
-            _ => Some(a - axis * away.copysign(away)),
-        }
+    DVec3::AXES.into_iter().find_map(|axis| match volume_sign(a, b, c, a + axis * FAR) {
+        0 => None,
+        sign => Some(a + axis * FAR * f64::from(sign)),
     })
 }
 

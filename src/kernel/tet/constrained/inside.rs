@@ -47,21 +47,25 @@ impl Work {
                 Across::Outside(mesh.boundary.len() as u32 - 1)
             }));
         }
-        Ok(self.placed(mesh, across))
+        self.placed(mesh, across)
     }
 
     /// Gives the tetrahedra their points in mm: corners as they were given; where that turns a tetrahedron inside
-    /// out, as rounded to the lattice, which turns none.
-    fn placed(&self, mut mesh: TetMesh, across: Vec<[Across; 4]>) -> Complex {
+    /// out, as rounded to the lattice, which turns none unless floats are coarser than the lattice.
+    fn placed(&self, mut mesh: TetMesh, across: Vec<[Across; 4]>) -> Result<Complex, NoTetrahedra> {
         let numbers = 0..self.delaunay.points.len() as u32;
         mesh.points = numbers.map(|i| self.place(i)).collect();
         let given = Complex::new(mesh, across);
         if given.check_volumes().is_ok() {
-            return given;
+            return Ok(given);
         }
         let (mut mesh, across) = given.into_parts();
         mesh.points = self.delaunay.points.iter().map(|&p| self.lattice.place(p)).collect();
-        Complex::new(mesh, across)
+        let rounded = Complex::new(mesh, across);
+        match rounded.check_volumes() {
+            Ok(()) => Ok(rounded),
+            Err(_) => Err(NoTetrahedra::Far { distance: self.lattice.reach() }),
+        }
     }
 
     /// How often the boundary winds around each tetrahedron: once inside, not at all outside.

@@ -37,8 +37,10 @@ pub enum NoTetrahedra {
         /// How many.
         corners: usize,
     },
-    /// Two parts of the boundary meet where they share no corner.
-    #[error("the boundary crosses itself near {place}; tetrahedra need one that does not")]
+    /// Two parts of the boundary meet where they share no corner, or come nearer than the lattice tells apart.
+    #[error(
+        "the boundary crosses itself near {place}, or nearly touches itself; tetrahedra need one that does not"
+    )]
     Crossing {
         /// Where, mm.
         place: DVec3,
@@ -56,6 +58,14 @@ pub enum NoTetrahedra {
         /// Where, mm.
         place: DVec3,
     },
+    /// Floats are too coarse where the solid stands.
+    #[error(
+        "coordinates cannot hold the tetrahedra {distance} mm from the origin; nearer to it they can"
+    )]
+    Far {
+        /// The largest coordinate in mm.
+        distance: f64,
+    },
     /// The sides of faces do not tell inside from outside.
     #[error("the boundary is open near {place}; tetrahedra need a closed one")]
     Open {
@@ -70,7 +80,8 @@ const NEW_POINTS: usize = 20;
 /// Fills a closed polyhedron with tetrahedra. Its corners are kept, its edges may get points between.
 ///
 /// # Errors
-/// When the boundary spans no volume, is open or crosses itself, or has edges that nearly touch.
+/// When the boundary spans no volume, is open or crosses itself, or has edges that nearly touch, or stands so far from
+/// the origin that coordinates cannot hold new points.
 ///
 /// ```
 /// use glam::DVec3;

@@ -90,6 +90,19 @@ fn solids_that_touch_are_filled() {
 }
 
 #[test]
+fn far_from_the_origin_nothing_is_turned_unsaid() {
+    for distance in [1e3, 1e6, 1e9, 1e12, 1e15] {
+        let by = DVec3::splat(distance);
+        let mut plates = cuboid(by, by + dvec3(40.0, 30.0, 1.0));
+        plates.append(&cuboid(by + dvec3(1.0, 1.0, 1.0), by + dvec3(3.0, 3.0, 2.0)));
+        match tetrahedralize(&plates) {
+            Ok(complex) => assert_eq!(complex.check(), Ok(()), "{distance}"),
+            Err(why) => assert!(distance > 1e9, "{distance}: {why}"),
+        }
+    }
+}
+
+#[test]
 fn a_hollow_stays_empty() {
     let mut hollow = cuboid(DVec3::splat(-2.0), DVec3::splat(2.0));
     let mut inner = cuboid(DVec3::NEG_ONE, DVec3::ONE);
